@@ -21,6 +21,8 @@ COMMAND = "cellctl.command"
 """Offline commands of a process: functions that add themselves to a Typer application."""
 CALIBRATE = "cellctl.calibrate"
 """The same below `cellctl calibrate`."""
+INSERTION_JUDGE = "cellctl.insertion_judge"
+"""Functions that judge a recorded insertion (``cellctl.force.judged_insertion``)."""
 WITH_FAULTS = (
     ROBOT,
     STOP_CHANNEL,

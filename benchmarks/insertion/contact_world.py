@@ -6,6 +6,7 @@ line, no links, no store, no second process. Time is the world's own, so a busy 
 """
 
 from bisect import bisect_right
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,8 +14,9 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.geometry.pose import Array
-from cellctl.guard.limits import GuardLimits
+from cellctl.guard.limits import GuardLimits, Six
 from cellctl.guard.report import GuardSamples, GuardTrip, TareResult, TripReason
+from cellctl.guard.watch.detectors import FrozenDetector
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamReport
 from fakes.scenes.socket.part import PegPart, nominal_fit
 from fakes.scenes.socket.peaks import ForcePeaks
@@ -51,6 +53,32 @@ class Imperfections:
     moment_nm: float
 
 
+class SensorFault:
+    """A sensor that tells something else than what acts on it, from a moment on."""
+
+    def __init__(self, told: Callable[[Array, Array], Array]) -> None:
+        """``told``: what it tells for a true sample and for the last one before the fault."""
+        self.begins_s = np.inf
+        """On the clock of the world; set by whoever knows when."""
+        self._told, self._last = told, np.zeros(6)
+
+    def tell(self, sample: Array, now_s: float) -> Array:
+        """For one true sample, shape (6,)."""
+        if now_s < self.begins_s:
+            self._last = sample
+            return sample
+        return self._told(sample, self._last)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Injected:
+    """What is wrong with one peg, hole, gripper or sensor; None is as drawn."""
+
+    fit: Fit | None = None
+    grip_n: float | None = None
+    sensor: SensorFault | None = None
+
+
 class ContactWorld:
     """The truth, a millisecond at a time; stream and guard are views of it."""
 
@@ -61,10 +89,13 @@ class ContactWorld:
         base_T_flange: RigidTransform,
         imperfections: Imperfections,
         rng: np.random.Generator,
+        *,
+        injected: Injected | None = None,
     ) -> None:
         """``base_T_flange``: where the arm stands when the stream begins; the base is the cell."""
         self.now_s = 100.0
-        self.fit: Fit = nominal_fit(scenario.fit)
+        made = injected or Injected()
+        self.fit: Fit = made.fit or nominal_fit(scenario.fit)
         self._hole = part.cell_T_hole.as_matrix()
         self._hole_inverse = inverse_matrix(self._hole)
         self._flange_T_peg = part.flange_T_peg.as_matrix()
@@ -73,12 +104,12 @@ class ContactWorld:
         self._imperfections, self._rng = imperfections, rng
         self._error_m = np.zeros(3)
         stiffness = robot_stiffness(scenario.compliance)
-        grip_n = scenario.peg.grip_force_n
+        grip_n = made.grip_n or scenario.peg.grip_force_n
         self.peg = HeldPeg(self.fit, stiffness, pose_of(self._hole_T_peg()), grip_n=grip_n)
         self.peaks = ForcePeaks()
         self.late = 0
         self.stream = InsertionStream(self)
-        self.guard = InsertionGuard(self)
+        self.guard = InsertionGuard(self, made.sensor)
 
     @property
     def seated(self) -> bool:
@@ -160,8 +191,9 @@ class InsertionStream(PoseStream):
 class InsertionGuard:
     """The sensor through its bandwidth and noise, and the limits of the guard on it."""
 
-    def __init__(self, world: ContactWorld) -> None:
-        self._world = world
+    def __init__(self, world: ContactWorld, fault: SensorFault | None) -> None:
+        self._world, self._fault = world, fault
+        self._frozen: FrozenDetector | None = None
         self._trip: GuardTrip | None = None
         self._frames: ContactFrames | None = None
         self._limits: GuardLimits | None = None
@@ -194,6 +226,8 @@ class InsertionGuard:
         turned = np.ravel(about.reshape(2, 3) @ tip[:3, :3])
         self._felt = self._felt + self._share * (turned - self._felt)
         sample = self._felt + noise
+        if self._fault is not None:
+            sample = self._fault.tell(sample, self._world.now_s)
         self._times.append(self._world.now_s)
         self._wrenches.append(sample)
         self._watch(sample)
@@ -202,6 +236,9 @@ class InsertionGuard:
         limits = self._limits
         if limits is None:
             return
+        if self._frozen is not None and self._frozen.update(_six(sample)):
+            frozen = GuardTrip(TripReason.SENSOR_FROZEN, self._world.now_s, "")
+            self._trip = self._trip or frozen
         share = STEP_S / (limits.filter_s + STEP_S)
         self._filtered = self._filtered + share * (sample - self._filtered)
         for reason, seen, most in (
@@ -225,8 +262,13 @@ class InsertionGuard:
 
     async def arm(self, limits: GuardLimits) -> None:
         """Watch these limits from now on."""
-        self._limits = limits
+        self._limits, self._frozen = limits, FrozenDetector(limits.frozen_samples)
 
     async def disarm(self) -> None:
         """Watch nothing."""
         self._limits = None
+
+
+def _six(values: Array) -> Six:
+    a, b, c, d, e, f = values.tolist()
+    return a, b, c, d, e, f

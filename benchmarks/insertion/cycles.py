@@ -12,12 +12,11 @@ from typing import cast
 
 import numpy as np
 
-from benchmarks.insertion.contact_world import ContactWorld, Imperfections
+from benchmarks.insertion.contact_world import ContactWorld, Imperfections, Injected
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
 from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
-from cellctl.cell.contact_motion.ticks import NoObserver
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
 from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
@@ -27,15 +26,18 @@ from cellctl.errors.base import CellError
 from cellctl.processes.peg_in_hole.calibrations import CALIBRATIONS, CONTACT_LOOP
 from cellctl.processes.peg_in_hole.cycle import CycleLog, CyclePlan, search_and_insert
 from cellctl.processes.peg_in_hole.facts import with_measured
+from cellctl.processes.peg_in_hole.offline.judged_part import judged_part
+from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import contact_settings
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M, touch_face
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import believed_frames, on_face, peg_recipes
 from cellctl.processes.peg_in_hole.steps.backing_out import back_out_after
-from fakes.scenes.socket.part import draw_part
+from fakes.scenes.socket.part import PegPart, draw_part
 from fakes.scenes.socket.peaks import ForcePeaks
 from fakes.scenes.socket.scenario import SocketScenario
 from fakes.world.frames import from_written
@@ -83,6 +85,12 @@ class CycleOutcome:
     cycle_s: float = 0.0
     peaks: dict[CyclePhase, ForcePeaks] = field(default_factory=dict)
     """True forces of each phase."""
+    height_m: float = 0.0
+    """Of the peg's tip over the face at the end."""
+    curve: str = ""
+    """Ticks from the face on, as the record of a run has them."""
+    part: JudgedPart | None = None
+    """What the record says to whoever judges the curve later."""
     unsolved_share: float = 0.0
     """Of the steps in contact: those in which the model found no equilibrium."""
 
@@ -91,20 +99,32 @@ class CycleOutcome:
         return self.peaks[phase].force_n[window_ms] if phase in self.peaks else 0.0
 
 
-def run_cycle(cell: CycleCell, seed: int) -> CycleOutcome:
+@dataclass(frozen=True, slots=True, eq=False)
+class CycleInjection:
+    """What is wrong with one cycle."""
+
+    world: Injected = field(default_factory=Injected)
+    part: PegPart | None = None
+    """Another than the one that the seed draws."""
+    sensor_from: CyclePhase | None = None
+    """The sensor's fault begins so long after the first begin of this phase."""
+    sensor_delay_s: float = 0.0
+
+
+def run_cycle(cell: CycleCell, seed: int, injection: CycleInjection | None = None) -> CycleOutcome:
     """The same seed gives the same part, hole and noise."""
-    return asyncio.run(_Cycle(cell, seed).run())
+    return asyncio.run(_Cycle(cell, seed, injection or CycleInjection()).run())
 
 
 class _Cycle:
-    def __init__(self, cell: CycleCell, seed: int) -> None:
-        self._cell, self._outcome = cell, CycleOutcome(seed)
+    def __init__(self, cell: CycleCell, seed: int, injection: CycleInjection) -> None:
+        self._cell, self._outcome, self._injection = cell, CycleOutcome(seed), injection
         task, scenario = cell.plan.task, cell.scenario
         sensor: Mapping[str, float] = scenario.force_sensors[scenario.peg.force_sensor].model_dump()
         self._above = from_written(scenario.taught[scenario.peg.carried_by]["above_hole"])
         self._world = ContactWorld(
             scenario,
-            draw_part(scenario, seed, 1),
+            injection.part or draw_part(scenario, seed, 1),
             self._above,
             Imperfections(
                 task.cell.repeatability_m,
@@ -113,7 +133,9 @@ class _Cycle:
                 sensor["noise_nm"],
             ),
             np.random.default_rng([seed, 7]),
+            injected=injection.world,
         )
+        self.ticks = TickLog()
 
     async def run(self) -> CycleOutcome:
         world, outcome = self._world, self._outcome
@@ -124,6 +146,7 @@ class _Cycle:
             outcome.fault = f"F{fault.number}"
         outcome.cycle_s = world.now_s - begun_s
         outcome.unsolved_share = world.peg.unsolved_share
+        outcome.height_m = float(world.peg.pose[2])
         return outcome
 
     async def _insert(self) -> None:
@@ -133,6 +156,8 @@ class _Cycle:
         await self._begin(CyclePhase.FACE, "")
         face = await touch_face(motions, plan.task, plan.face)
         await motions.back_out(CLEAR_M - face.depth_m + plan.face.radius_m * face.tilt_rad)
+        outcome.part = judged_part(self._cell.recipe, plan, face.yields_m)
+        self.ticks = TickLog()
         motions = self._motions(on_face(frames, face))
         try:
             result = await search_and_insert(
@@ -146,11 +171,16 @@ class _Cycle:
             outcome.seated = self._world.seated
             outcome.fault = f"F{fault.number}"
             await back_out_after(fault, motions)
+        finally:
+            outcome.curve = self.ticks.text()
 
     async def _begin(self, phase: CyclePhase, _words: str) -> None:
         world, outcome, task = self._world, self._outcome, self._cell.plan.task
         if phase is CyclePhase.SEARCH and phase not in outcome.peaks:
             outcome.search_s = -world.now_s
+        fault, injection = self._injection.world.sensor, self._injection
+        if fault is not None and phase is injection.sensor_from and np.isinf(fault.begins_s):
+            fault.begins_s = world.now_s + injection.sensor_delay_s
         if phase is CyclePhase.INSERTION:
             outcome.search_s += world.now_s
         tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
@@ -166,7 +196,7 @@ class _Cycle:
             tare,
             frames,
             settings=contact_settings(cell.recipe, cell.plan, cell.settings),
-            observer=NoObserver(),
+            observer=self.ticks,
             clock=lambda: world.now_s,
         )
         return StreamedContact(loop)

@@ -189,6 +189,12 @@ def _identify_payload(app: typer.Typer) -> None:
     app.command("identify-payload", rich_help_panel=OFFLINE)(identify_payload)
 
 
+def _judge_insertion(app: typer.Typer) -> None:
+    from cellctl.cli.offline.judge_insertion import judge_insertion
+
+    app.command("judge-insertion", rich_help_panel=OFFLINE)(judge_insertion)
+
+
 def _plan(app: typer.Typer) -> None:
     from cellctl.cli.planning.app import app as plan
 
@@ -212,6 +218,7 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "audit": _audit,
     "calibrate": _calibrate,
     "measure": _measure,
+    "judge-insertion": _judge_insertion,
     "identify-payload": _identify_payload,
     "plan": _plan,
 }

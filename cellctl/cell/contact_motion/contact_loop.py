@@ -7,7 +7,7 @@ import numpy as np
 from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.cell.contact_motion.settings import ContactSettings
-from cellctl.cell.contact_motion.ticks import ContactTick, TickObserver
+from cellctl.cell.contact_motion.ticks import ContactTick, MotionKind, TickObserver
 from cellctl.cell.contact_motion.trail import Trail
 from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.cell.guarded_motion.guarded_moves import late_trip
@@ -56,6 +56,7 @@ class ContactLoop:
         self.pace = Pace.STEP
         """How the next setpoint is to follow."""
         self.sample = self._sample(self._report)
+        self._motion, self._kind = 0, MotionKind.HOLD
 
     @property
     def period_s(self) -> float:
@@ -76,6 +77,10 @@ class ContactLoop:
     def felt(self) -> Array:
         """Filtered wrench on the peg about its tip, in the axes of the task, shape (6,)."""
         return np.concatenate([self.sample.force_n, self.sample.moment_nm])
+
+    def begin_motion(self, kind: MotionKind) -> None:
+        """The ticks from now on belong to another motion."""
+        self._motion, self._kind = self._motion + 1, kind
 
     async def send(self, tip: Array) -> ContactSample:
         """Send six numbers of the tip and wait for the tick; raises what ends the contact.
@@ -100,7 +105,16 @@ class ContactLoop:
         self.trail.note(tip)
         self.pace = self._rules.pace(age_s, force_age_s)
         self._observer.take(
-            ContactTick(self.sample, tip, age_s, force_age_s, self.pace, report.late)
+            ContactTick(
+                self.sample,
+                tip,
+                age_s,
+                force_age_s,
+                self.pace,
+                report.late,
+                self._motion,
+                self._kind,
+            )
         )
         return self.sample
 

@@ -28,6 +28,7 @@ from cellctl.cell.contact_motion.motions import (
 )
 from cellctl.cell.contact_motion.stalled_feed import StalledFeed
 from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
+from cellctl.cell.contact_motion.ticks import MotionKind
 from cellctl.clock import now_s
 from cellctl.errors.streamed_contact import HeldTooLong
 from cellctl.force.contact.streamed.path import PathFollower, straight
@@ -77,7 +78,13 @@ class StreamedContact(ContactMotions):
         # What stands in the way after all must not be met with more than the guard allows.
         met_m_s = met_speed_m_s(self._settings.figures, _MET_RATIO * self._settings.limit_n)
         speed = min(speed_m_s, met_m_s, max(path.remaining, _SHORTEST_M) / least_s)
-        moved = await self._run(path, lambda _sample: speed, _first(touched, _arrived(path)), speed)
+        moved = await self._run(
+            MotionKind.MOVE_FREE,
+            path,
+            lambda _sample: speed,
+            _first(touched, _arrived(path)),
+            speed,
+        )
         if moved.ended is Ended.TRAVEL:
             self._loop.trail.begin()
         return moved
@@ -100,7 +107,9 @@ class StreamedContact(ContactMotions):
             return Ended.FORCE if -float(sample.force_n @ direction) > force_n else None
 
         end = _first(touched, _arrived(path))
-        return await self._run(path, lambda _sample: speed, end, speed, press)
+        return await self._run(
+            MotionKind.TOUCH, path, lambda _sample: speed, end, speed, press=press
+        )
 
     async def press(
         self, force_n: float, hold_s: float, until: Condition | None = None
@@ -108,7 +117,7 @@ class StreamedContact(ContactMotions):
         """See ``ContactMotions``; raises ``ContactLost`` unless a condition waits for that."""
         self._pressed_n = force_n
         press = self._press_along(force_n, contact_must_stay=until is None)
-        return await self._hold(press, hold_s, until)
+        return await self._hold(MotionKind.PRESS, press, hold_s, until)
 
     async def slide(
         self,
@@ -132,7 +141,9 @@ class StreamedContact(ContactMotions):
 
         end = _first(_when(until), held, _arrived(path))
         press = self._press_along(press_n)
-        slid = await self._run(path, lambda _sample: speed, end, speed, press)
+        slid = await self._run(
+            MotionKind.SLIDE, path, lambda _sample: speed, end, speed, press=press
+        )
         self._loop.trail.begin()
         return slid
 
@@ -155,7 +166,9 @@ class StreamedContact(ContactMotions):
             push = np.concatenate([hold_force_n, np.zeros(3)])
             press = giving_way(self._loop, push, (*held, TILT_X, TILT_Y), spring=self._springs())
         end = _first(_when(until), _arrived(path))
-        return await self._run(path, lambda _sample: speed, end, speed, press)
+        return await self._run(
+            MotionKind.TURN, path, lambda _sample: speed, end, speed, press=press
+        )
 
     async def comply(
         self,
@@ -171,7 +184,7 @@ class StreamedContact(ContactMotions):
         axes = (X, Y, Z, TILT_X, TILT_Y, YAW) if turns else (X, Y, Z)
         must_stay = press_n > 0 and until is None
         press = giving_way(self._loop, push, axes, contact_must_stay=must_stay)
-        return await self._hold(press, hold_s, until)
+        return await self._hold(MotionKind.COMPLY, press, hold_s, until)
 
     async def feed(
         self, depth_m: float, force_limit_n: float, until: Condition | None = None
@@ -184,7 +197,9 @@ class StreamedContact(ContactMotions):
         feed = StalledFeed(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
         press = giving_way(self._loop, np.zeros(6), (X, Y, TILT_X, TILT_Y), spring=self._springs())
         end = _first(_when(until), feed.stalled, _arrived(path))
-        return await self._run(path, feed.speed_m_s, end, feed.slowest_m_s, press)
+        return await self._run(
+            MotionKind.FEED, path, feed.speed_m_s, end, feed.slowest_m_s, press=press
+        )
 
     async def back_out(self, height_m: float) -> ContactMotion:
         """See ``ContactMotions``; ends by ``FORCE`` when something holds the peg back."""
@@ -204,13 +219,14 @@ class StreamedContact(ContactMotions):
             pulled = float(sample.force_n[2]) > _PULL_RATIO * settings.press_n
             return Ended.FORCE if pulled else None
 
-        return await self._run(path, speed, _first(held, _arrived(path)), slow)
+        return await self._run(MotionKind.BACK_OUT, path, speed, _first(held, _arrived(path)), slow)
 
     async def hold_while(
         self, work: Coroutine[Any, Any, None], *, limit_s: float = _HOLD_S
     ) -> None:
         """Stand in the stream while something else is done; raises what either of them raises, or
         ``HeldTooLong`` after ``limit_s``."""
+        self._loop.begin_motion(MotionKind.HOLD)
         task = asyncio.create_task(work)
         end_s = now_s() + limit_s
         try:
@@ -241,7 +257,10 @@ class StreamedContact(ContactMotions):
         most = acceleration or self._settings.acceleration_m_s2
         return PathFollower(points, lengths, most, self._loop.period_s)
 
-    async def _hold(self, press: Press, hold_s: float, until: Condition | None) -> ContactMotion:
+    async def _hold(
+        self, kind: MotionKind, press: Press, hold_s: float, until: Condition | None
+    ) -> ContactMotion:
+        self._loop.begin_motion(kind)
         here = self._loop.tip_command
         path = self._path(np.stack([here, here]), np.zeros(1))
         end = _when(until)
@@ -249,12 +268,15 @@ class StreamedContact(ContactMotions):
 
     async def _run(
         self,
+        kind: MotionKind,
         path: PathFollower,
         speed: Callable[[ContactSample], float],
         end: Callable[[ContactSample], Ended | None],
         slowest: float,
+        *,
         press: Press | None = None,
     ) -> ContactMotion:
+        self._loop.begin_motion(kind)
         limit_s = _LATEST_S + _LATEST_RATIO * path.remaining / slowest
         return await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
 

@@ -2,10 +2,26 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from enum import StrEnum
 
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.geometry.pose import Array
+
+
+class MotionKind(StrEnum):
+    """Which motion a tick belongs to, by its method in ``ContactMotions``."""
+
+    HOLD = "hold"
+    """The arm stands in its stream while something else is done."""
+    MOVE_FREE = "move_free"
+    TOUCH = "touch"
+    PRESS = "press"
+    SLIDE = "slide"
+    TURN = "turn"
+    COMPLY = "comply"
+    FEED = "feed"
+    BACK_OUT = "back_out"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,6 +38,9 @@ class ContactTick:
     """How the next setpoint follows."""
     late: int
     """Setpoints that came too late since the stream began."""
+    motion: int
+    """Counts the motions of the stream from 1 on; the ticks of one motion have the same number."""
+    kind: MotionKind
 
 
 class TickObserver(ABC):

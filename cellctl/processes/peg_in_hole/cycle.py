@@ -10,7 +10,7 @@ from cellctl.cell.contact_motion.motions import ContactMotions
 from cellctl.processes.peg_in_hole.first_contact.reactions import Contacts, meet_face, require_walls
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from cellctl.processes.peg_in_hole.plan.choice import SearchChoice, SearchName
-from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.conditions import against_a_wall
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M, FacePlan
@@ -77,6 +77,15 @@ class CycleLog:
         return cls(HoleMap(plan.task.cell.uncertainty_m, plan.task.fit.catch_radius_m))
 
 
+def greatest_before_n(task: SearchTask) -> float:
+    """A bound of the force on the part in its search, where it may as well have slipped.
+
+    A greater one would have tripped the guard, and there would be no verdict. What slipped while
+    the face was touched did so before the touches that frame A rests on.
+    """
+    return guard_force(task, CyclePhase.SEARCH).value
+
+
 BeginPhase = Callable[[CyclePhase, str], Awaitable[None]]
 """Called before the first motion of a phase, with words for the operator."""
 
@@ -118,7 +127,21 @@ async def search_and_insert(
     found_by = log.found_by = await find_hole(probe, plan.choice.order)
     await require_walls(motions, task, plan.choice.parameters, log.contacts)
     felt = log.contacts[-1].found.value
-    await begin(CyclePhase.INSERTION, f"insert: the hole was found by {found_by.value}, {felt}")
+    words = f"insert: the hole was found by {found_by.value}, {felt}"
+    fed, evidence, judgement = await feed_and_judge(motions, plan, face_yields_m, begin, words)
+    return CycleResult(found_by, fed, evidence, judgement)
+
+
+async def feed_and_judge(
+    motions: ContactMotions,
+    plan: CyclePlan,
+    face_yields_m: float,
+    begin: BeginPhase,
+    words: str = "insert",
+) -> tuple[Fed, InsertionEvidence, PegJudgement]:
+    """From the entry, or from over it, to the verdict; raises the faults of the insertion."""
+    task = plan.task
+    await begin(CyclePhase.INSERTION, words)
     fed = await insert(motions, task, face_yields_m)
     await begin(CyclePhase.VERDICT, "verify: pushed to four sides")
     capture = await measure_capture(motions, task)
@@ -130,12 +153,10 @@ async def search_and_insert(
         seat_force_n=fed.seat_force_n,
         seat_slope_n_m=fed.seat_slope_n_m,
         capture=capture,
-        # The part may as well have slipped in the search, which presses up to its own limit.
-        greatest_force_n=max(fed.greatest_force_n, task.limits.search_n),
+        greatest_force_n=max(fed.greatest_force_n, greatest_before_n(task)),
         grip_force_n=plan.grip_force_n,
         retouch_error_m=None,
         keyed_directions=keyed,
         held_pull_n=held_n,
     )
-    judgement = judge_peg(evidence, task, plan.seat)
-    return CycleResult(found_by, fed, evidence, judgement)
+    return fed, evidence, judge_peg(evidence, task, plan.seat)

@@ -153,6 +153,15 @@ class KeywayNotFound(ByTouchError):
     remedy = "Compare keying and angle of plug and socket; look for a bent or broken key."
 
 
+class PegCurveInvalid(ByTouchError):
+    """A file of a recorded insertion that cannot be judged."""
+
+    number = 556
+    text = "The recorded insertion cannot be judged"
+    cause = "Another file, missing columns, unknown units, or signs that contradict the motion."
+    remedy = "Compare the file with the columns in docs/insertion-by-touch.md."
+
+
 class PegNotInserted(ByTouchError):
     """A peg that is not known to be inserted. Subclasses say which evidence is missing."""
 

@@ -1,6 +1,6 @@
-"""`cellctl plan-plug`, `judge-insertion`, `calibrate plug` and `calibrate tool-turn`.
+"""`cellctl plan-plug`, `calibrate plug`, `calibrate tool-turn`, and what judges a plug's curve.
 
-Exit codes: 0 planned, seated or calibrated; 3 when a result was found but is not good; 1 for a
+Exit codes: 0 planned or calibrated; 3 when a result was found but is not good; 1 for a
 fault, which is named with its number.
 """
 
@@ -16,6 +16,7 @@ from cellctl.calibration.input_file import read_input
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.config import FileInvalid
+from cellctl.force.judged_insertion import JudgedInsertion
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
@@ -42,17 +43,11 @@ PANEL = "From files, without a cell"
 
 InFile = Annotated[Path, typer.Option("--in", help="Input file, see docs/plugging.md.")]
 OutFile = Annotated[Path | None, typer.Option("--out", help="Write the result to this JSON file.")]
-Drawing = Annotated[Path, typer.Option("--connector", help="Drawing of the connector, TOML.")]
 
 
 def add_plan_plug(app: typer.Typer) -> None:
     """Add the command to an application."""
     app.command("plan-plug", rich_help_panel=PANEL)(plan_plug_from_file)
-
-
-def add_judge_insertion(app: typer.Typer) -> None:
-    """Add the command to an application."""
-    app.command("judge-insertion", rich_help_panel=PANEL)(judge_insertion_from_file)
 
 
 def add_calibrate_plug(app: typer.Typer) -> None:
@@ -98,24 +93,21 @@ def plan_plug_from_file(
     _write(out, plan.to_record())
 
 
-def judge_insertion_from_file(
-    curve: Annotated[Path, typer.Option(help="CSV of the insertion, see docs/plugging.md.")],
-    connector: Drawing,
-    out: OutFile = None,
-) -> None:
-    """Whether a plug is seated, or which fault its force curve shows."""
+def judge_by_connector(curve: Path, connector: Path) -> JudgedInsertion:
+    """The judge of `cellctl judge-insertion --connector`; raises ``InsertionCurveInvalid`` and the
+    faults of a drawing."""
     try:
         text = curve.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InsertionCurveInvalid(f"{curve}: {error}") from error
     judgement = judge_insertion(parse_curve(text), read_connector(connector))
-    _show_checks(judgement.checks)
-    _say(judgement.verdict.value)
-    if judgement.fault is not None:
-        _say(str(judgement.fault))
-    _write(out, judgement.to_record())
-    if judgement.verdict is not InsertionVerdict.SEATED:
-        raise typer.Exit(NOT_GOOD)
+    return JudgedInsertion(
+        judgement.verdict.value,
+        judgement.verdict is InsertionVerdict.SEATED,
+        judgement.checks,
+        judgement.fault,
+        judgement.to_record(),
+    )
 
 
 def calibrate_plug(

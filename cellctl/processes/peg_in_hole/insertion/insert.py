@@ -16,6 +16,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
     Standing,
     greatest_axial_n,
     seat_slope_n_m,
+    unloaded_depth_m,
 )
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
@@ -93,9 +94,7 @@ class _Feed:
         return reached_m < self._task.fit.depth_m - SEAT_TOLERANCE_M
 
     def _unloaded_m(self, standing: Standing) -> float:
-        """Depth of the tip, which arm and contact have yielded under the force to get beyond."""
-        yields_m = standing.axial_n / self._task.cell.stiffness_n_m
-        return standing.depth_m - yields_m + self._face_yields_m
+        return unloaded_depth_m(standing, self._task.cell.stiffness_n_m, self._face_yields_m)
 
     def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
         """What is known at the end of the last feed."""

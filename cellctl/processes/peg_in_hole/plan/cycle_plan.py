@@ -12,7 +12,7 @@ from cellctl.processes.peg_in_hole.plan.task import (
     KeyGeometry,
     SearchTask,
 )
-from cellctl.processes.peg_in_hole.recipe import KeysSection, PegRecipe
+from cellctl.processes.peg_in_hole.recipe import Fit, KeysSection, PegRecipe, Seat
 from cellctl.processes.peg_in_hole.search.face import FacePlan
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
@@ -26,12 +26,7 @@ def cycle_plan(recipe: PegRecipe, settings: PegSettings) -> CyclePlan:
     return CyclePlan(
         task,
         choose_search(task, recipe.search),
-        PegSeatLimits(
-            recipe.seat.least_n,
-            recipe.seat.most_n,
-            keyed=recipe.fit.keys is not None,
-            pull_n=recipe.seat.pull_n,
-        ),
+        seat_limits(recipe.fit, recipe.seat),
         FacePlan(
             place.face_radius_mm * MM, place.height_uncertainty_mm * MM, place.datum_depth_mm * MM
         ),
@@ -47,20 +42,30 @@ def _keys(section: KeysSection) -> KeyGeometry:
     )
 
 
+def seat_limits(fit: Fit, seat: Seat) -> PegSeatLimits:
+    """What a good part feels like at its seat."""
+    return PegSeatLimits(seat.least_n, seat.most_n, keyed=fit.keys is not None, pull_n=seat.pull_n)
+
+
+def fit_geometry(fit: Fit) -> FitGeometry:
+    """The drawing in SI units."""
+    outer_mm = fit.outer_radius_mm
+    return FitGeometry(
+        fit.peg_radius_mm * MM,
+        fit.clearance_mm * MM,
+        fit.hole_chamfer_mm * MM,
+        fit.peg_chamfer_mm * MM,
+        fit.depth_mm * MM,
+        None if outer_mm is None else outer_mm * MM,
+        None if fit.keys is None else _keys(fit.keys),
+    )
+
+
 def search_task(recipe: PegRecipe, settings: PegSettings) -> SearchTask:
     """The task in SI units."""
     fit, forces, place = recipe.fit, recipe.forces, recipe.base_T_hole
-    outer_mm = fit.outer_radius_mm
     return SearchTask(
-        FitGeometry(
-            fit.peg_radius_mm * MM,
-            fit.clearance_mm * MM,
-            fit.hole_chamfer_mm * MM,
-            fit.peg_chamfer_mm * MM,
-            fit.depth_mm * MM,
-            None if outer_mm is None else outer_mm * MM,
-            None if fit.keys is None else _keys(fit.keys),
-        ),
+        fit_geometry(fit),
         CellFigures(
             settings.stiffness_n_mm / MM,
             settings.dead_time_ms * _MS,

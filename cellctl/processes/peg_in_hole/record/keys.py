@@ -10,6 +10,8 @@ PANEL_SHIFT, PANEL_TURN = "panel.shift", "panel.turn"
 """Of the face from its reference."""
 CHOICE, CYCLE, TRACE, MAP = "search.choice", "insertion.result", "search.trace", "search.map"
 FAILURE = "insertion.failure"
+TASK = "insertion.task"
+"""What `cellctl judge-insertion` needs beside the ticks."""
 SEARCH_TIME, TOUCHES = "search.time", "search.touches"
 PEAK = "insertion.greatest_force"
 

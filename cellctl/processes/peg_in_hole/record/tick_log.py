@@ -6,13 +6,15 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cellctl.cell.contact_motion.ticks import ContactTick, TickObserver
+from cellctl.cell.contact_motion.ticks import ContactTick, MotionKind, TickObserver
 from cellctl.geometry.pose import Array
 
 COLUMNS = (
     "time_s", "x_mm", "y_mm", "depth_mm", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm",
 )  # fmt: skip
 """Time from the first tick, tip in frame A, force and moment of the hole on the peg about it."""
+MOTION, KIND = "motion", "kind"
+"""Number and kind of the motion that a tick belongs to; files of earlier versions have neither."""
 _M_TO_MM = 1e3
 
 
@@ -21,6 +23,8 @@ class TickLog(TickObserver):
     """Kept in memory until the stream has ended; at 50 ticks a second that is little."""
 
     rows: list[tuple[float, ...]] = field(default_factory=list)
+    motions: list[tuple[int, MotionKind]] = field(default_factory=list)
+    """Of each row."""
     begun_s: float | None = None
 
     def take(self, tick: ContactTick) -> None:
@@ -36,13 +40,15 @@ class TickLog(TickObserver):
                 *sample.moment_nm.tolist(),
             )
         )
+        self.motions.append((tick.motion, tick.kind))
 
     def text(self) -> str:
         """As CSV with a head line; four decimals are finer than sensor and encoders."""
         out = io.StringIO()
         writer = csv.writer(out, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        writer.writerows([f"{value:.4f}" for value in row] for row in self.rows)
+        writer.writerow((*COLUMNS, MOTION, KIND))
+        for row, (motion, kind) in zip(self.rows, self.motions, strict=True):
+            writer.writerow([*(f"{value:.4f}" for value in row), motion, kind])
         return out.getvalue()
 
     @property
@@ -54,15 +60,18 @@ class TickLog(TickObserver):
 
 
 def read_ticks(text: str) -> dict[str, Array]:
-    """The columns by name; raises ``ValueError`` for what is no such table."""
+    """Time, tip and wrench by the names of ``COLUMNS``.
+
+    Raises ``ValueError`` for what is no such table.
+    """
     try:
         rows = list(csv.reader(io.StringIO(text)))
     except csv.Error as error:
         raise ValueError(f"no table of ticks: {error}") from error
     # With other columns or other units it would be read, and be wrong.
-    if len(rows) < 2 or tuple(rows[0]) != COLUMNS:
+    if len(rows) < 2 or tuple(rows[0]) not in (COLUMNS, (*COLUMNS, MOTION, KIND)):
         raise ValueError("no table of ticks")
-    values = np.array([[float(cell) for cell in row] for row in rows[1:]])
-    if values.ndim != 2 or values.shape[1] != len(COLUMNS):
+    if {len(row) for row in rows} != {len(rows[0])}:
         raise ValueError("rows of different lengths")
+    values = np.array([[float(cell) for cell in row[: len(COLUMNS)]] for row in rows[1:]])
     return {name: values[:, index] for index, name in enumerate(COLUMNS)}

@@ -6,13 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import Ended
-from cellctl.processes.peg_in_hole.search.conditions import LostSupport
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport, either
 from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, Felt, TouchProbe
 
 Array = NDArray[np.float64]
 
 SLIDE_M_S = 5e-3
 _INSIDE_M = 0.5e-3
+_BEHIND_M = 0.3e-3
+"""So far behind a flank the peg is put down again; scratches and burrs are narrower."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,14 +30,15 @@ class Edge:
 async def slide_to_edge(probe: TouchProbe, direction: Array, rim_m: float) -> Edge | None:
     """From a contact on the face along a unit vector (2,); None where no edge is in reach.
 
-    A loss of support within the uncertainty of the hole may be the hole: there the peg is pressed.
+    A loss of support within the uncertainty of the hole may be the hole, and so may a flank: there
+    the peg is pressed, and let go. Behind a flank that lets nothing in the slide goes on.
     """
     begin_m = await _here(probe)
     # A little more than the diameter: an edge is in reach from anywhere on the face.
     end_m = begin_m + 2.2 * rim_m * direction
     while True:
         stop = LostSupport(probe.press_n)
-        motion = await probe.slide(end_m[None, :], SLIDE_M_S, stop)
+        motion = await probe.slide(end_m[None, :], SLIDE_M_S, either(stop, probe.walled))
         if motion.ended is Ended.TRAVEL:
             return None
         here_m = motion.last.task_position_tip_m[:2]
@@ -46,6 +49,9 @@ async def slide_to_edge(probe: TouchProbe, direction: Array, rim_m: float) -> Ed
             return Edge(lost_m, float(np.linalg.norm(lost_m - begin_m)), entered=False)
         if await probe.enters():
             return Edge(lost_m, 0.0, entered=True)
+        if stop.begin is None:
+            # Slid on from here the peg would only be pressed against the same flank again.
+            await probe.touch_down(here_m + _BEHIND_M * direction, UPRIGHT)
 
 
 async def stand_inside(probe: TouchProbe, edge_m: Array, centre_m: Array) -> Array:

@@ -101,7 +101,8 @@ class TouchProbe:
         self.hole_map = hole_map
         self.deadline_s = deadline_s
         self.trace = SearchTrace() if trace is None else trace
-        self._walled = against_a_wall(self.press_n, task.cell)
+        self.walled = against_a_wall(self.press_n, task.cell)
+        """Ends a slide or a press at a flank, before the force on it adds up."""
 
     @property
     def press_n(self) -> float:
@@ -171,7 +172,7 @@ class TouchProbe:
             nonlocal met
             if entered(sample):
                 met = Met.NOTHING
-            elif self._walled(sample):
+            elif self.walled(sample):
                 met = Met.WALL
             return met is not Met.STAND or stands(sample) or self._late(sample)
 
@@ -208,7 +209,7 @@ class TouchProbe:
             rest_m = way_m + centre_m
             while len(rest_m):
                 lost = LostSupport(self.press_n)
-                motion = await self.slide(rest_m, speed_m_s, either(lost, self._walled))
+                motion = await self.slide(rest_m, speed_m_s, either(lost, self.walled))
                 if motion.ended is Ended.TRAVEL:
                     break
                 if await self._enters_between(lost.begin, motion.last):
@@ -228,7 +229,7 @@ class TouchProbe:
             middle_m = (begin.task_position_tip_m[:2] + here_m) / 2
             speed = self.parameters.touch_speed.value
             await self.motions.slide(
-                middle_m[None, :], self.press_n, speed, self._walled, self.task.limits.search_n
+                middle_m[None, :], self.press_n, speed, self.walled, self.task.limits.search_n
             )
         return await self.enters()
 

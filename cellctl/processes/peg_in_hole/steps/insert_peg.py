@@ -7,6 +7,7 @@ from cellctl.processes.peg_in_hole.cycle import (
     CycleResult,
     search_and_insert,
 )
+from cellctl.processes.peg_in_hole.offline.judged_part import judged_part
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.cycle import (
@@ -25,6 +26,8 @@ async def find_and_insert(touched: FaceTouched) -> PegInserted:
     """Raises the faults of search, insertion and verdict; after most the peg is drawn out."""
     run, plan = touched.run, touched.run.facts.plan
     await run.recorder.document(keys.CHOICE, choice_record(plan))
+    part = judged_part(run.facts.recipe, plan, touched.face_yields_m)
+    await run.recorder.document(keys.TASK, part.model_dump(mode="json"))
     log = CycleLog.of(plan)
     try:
         async with contact(run, touched.frames, keys.INSERTION) as motions:

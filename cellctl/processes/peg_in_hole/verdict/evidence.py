@@ -8,8 +8,9 @@ from typing import Any
 class LateralCapture:
     """The peg pushed to both sides along x and y, with a small force into the hole."""
 
-    resisted: int
-    """Directions of four in which the push was met before the end of its way."""
+    resisted: int | None
+    """Directions of four in which the push was met before the end of its way; None where one was
+    not pushed at all and all others have resisted."""
     play_x_m: float | None
     play_y_m: float | None
     """Way between both contacts, less what arm and contact give way; None without both."""

@@ -9,7 +9,7 @@ from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _PRESS_N = 2.0
 _TURN_RAD_S = radians(1.0)
-_MET_NM = 0.4
+MET_NM = 0.4
 """Far above what friction at the wall makes, far below what bends a key."""
 _BEYOND_RAD = radians(1.5)
 """What arm and fingers yield under that moment, and what the attitude is uncertain by."""
@@ -26,7 +26,7 @@ async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeomet
     hold = np.array([0.0, 0.0, _PRESS_N])
 
     def met(sample: ContactSample) -> bool:
-        return abs(float(sample.moment_nm[2]) - free_nm) > _MET_NM
+        return abs(float(sample.moment_nm[2]) - free_nm) > MET_NM
 
     resisted = 0
     for sign in (1.0, -1.0):

@@ -7,7 +7,8 @@ touch.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import nan
+from enum import StrEnum
+from math import isnan, nan
 from typing import Any
 
 from cellctl.calibration.checks import Checks, LimitCheck
@@ -20,8 +21,8 @@ from cellctl.processes.peg_in_hole.faults import (
     PegSlipped,
     SensorDead,
 )
-from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
+from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 
 _MM = 1e-3
 # Items 1, 7, 5 and 4 of section 5.4.
@@ -53,6 +54,15 @@ _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
 )
 
 
+class PegVerdict(StrEnum):
+    """What the figures say of a peg. Only the first lets a part pass."""
+
+    INSERTED = "inserted"
+    NOT_INSERTED = "not inserted"
+    UNKNOWN = "unknown"
+    """No figure speaks against it, but at least one is missing."""
+
+
 @dataclass(frozen=True, slots=True)
 class PegSeatLimits:
     """What a good part feels like at its seat, from its recipe."""
@@ -76,6 +86,15 @@ class PegJudgement:
         return all(check.passed for check in self.checks)
 
     @property
+    def verdict(self) -> PegVerdict:
+        """Which of the three; a figure beyond its limit weighs more than one that is missing."""
+        failed = [check for check in self.checks if not check.passed]
+        if not failed:
+            return PegVerdict.INSERTED
+        missing = all(isnan(check.value) for check in failed)
+        return PegVerdict.UNKNOWN if missing else PegVerdict.NOT_INSERTED
+
+    @property
     def fault(self) -> PegNotInserted | None:
         """The numbered fault; None for a peg that is inserted."""
         failed = {check.name for check in self.checks if not check.passed}
@@ -90,12 +109,13 @@ class PegJudgement:
         fault = self.fault
         return {
             "inserted": self.inserted,
+            "verdict": self.verdict.value,
             "fault": None if fault is None else fault.number,
             "checks": [check.to_record() for check in self.checks],
         }
 
 
-def judge_peg(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLimits) -> PegJudgement:
+def judge_peg(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLimits) -> PegJudgement:
     """All items of section 5.4."""
     return PegJudgement(
         (
@@ -107,7 +127,7 @@ def judge_peg(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLimits
     )
 
 
-def _seat_checks(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLimits) -> Checks:
+def _seat_checks(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLimits) -> Checks:
     depth_m = _known(evidence.depth_m)
     force_n, slope = _known(evidence.seat_force_n), _known(evidence.seat_slope_n_m)
     least_slope = _LEAST_SLOPE * task.cell.stiffness_n_m
@@ -119,12 +139,12 @@ def _seat_checks(evidence: InsertionEvidence, task: SearchTask, seat: PegSeatLim
     )
 
 
-def _capture_checks(capture: LateralCapture | None, task: SearchTask) -> Checks:
+def _capture_checks(capture: LateralCapture | None, task: JudgedTask) -> Checks:
     most_mm = 2 * task.fit.clearance_m / _MM + _PLAY_MM
-    # Never pushed: nothing has resisted, and no figure is known.
-    found = capture or LateralCapture(0, None, None, nan, nan)
+    # Never pushed: no figure is known.
+    found = capture or LateralCapture(None, None, None, nan, nan)
     return (
-        LimitCheck(RESISTED, found.resisted, 4, "", "min"),
+        LimitCheck(RESISTED, _known(found.resisted), 4, "", "min"),
         LimitCheck(PLAY_X, _known(found.play_x_m) / _MM, most_mm, "mm"),
         LimitCheck(PLAY_Y, _known(found.play_y_m) / _MM, most_mm, "mm"),
         LimitCheck(STEADY, found.depth_change_m / _MM, _STEADY_MM, "mm"),

@@ -1,20 +1,34 @@
 """Pushes the peg to all four sides: between walls it resists, on a face it slides."""
 
+from collections.abc import Mapping
+from math import isnan, nan
+
 import numpy as np
 
-from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, Ended
-from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
+from cellctl.cell.contact_motion.motions import (
+    ContactMotion,
+    ContactMotions,
+    ContactSample,
+    Ended,
+)
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
+from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 
 _PRESS_N = 2.0
 _SPEED_M_S = 0.5e-3
 _LEAST_PUSH_N = 3.0
-_MARGIN_M = 0.1e-3
+MARGIN_M = 0.1e-3
 _SETTLE_S = 1.0
 """The arm comes back by what it had yielded under the force of the seat."""
 
+Side = tuple[int, float]
+"""Axis (0 for x, 1 for y) and sign of a push."""
+SIDES: tuple[Side, ...] = ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0))
+"""In the order of the pushes."""
 
-def push_force_n(cell: CellFigures) -> float:
+
+def push_force_n(cell: JudgedCell) -> float:
     """More than friction, and more than the slope of a chamfer, could resist with."""
     # How much a 45° chamfer with this friction holds against a push, as a multiple of what presses
     # on it: the tangent of 45° and the angle of friction together.
@@ -27,31 +41,56 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
     push_n = push_force_n(task.cell)
     yields_m = push_n / task.cell.stiffness_n_m
     begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
-    pushes: list[ContactMotion] = []
-    for axis in (0, 1):
-        for sign in (1.0, -1.0):
-            direction = np.zeros(3)
-            direction[axis] = sign
-            # The second push begins at the first contact and so has to undo what yielded there.
-            way_m = 2 * task.fit.clearance_m + 2 * yields_m + 2 * _MARGIN_M
-            pushes.append(await motions.touch(direction, way_m, push_n, _SPEED_M_S))
-    depths = [push.last.task_position_tip_m[2] for push in pushes]
-    forces = np.array([push.last.force_n for push in pushes])
+    pushes: dict[Side, ContactMotion | None] = {}
+    for axis, sign in SIDES:
+        direction = np.zeros(3)
+        direction[axis] = sign
+        # The second push begins at the first contact and so has to undo what yielded there.
+        way_m = 2 * task.fit.clearance_m + 2 * yields_m + 2 * MARGIN_M
+        pushes[axis, sign] = await motions.touch(direction, way_m, push_n, _SPEED_M_S)
+    return capture_of(begun, pushes, task)
+
+
+def capture_of(
+    begun: ContactSample, pushes: Mapping[Side, ContactMotion | None], task: JudgedTask
+) -> LateralCapture:
+    """What four pushes have met; None for a side to which the peg was not pushed.
+
+    ``begun``: pressed, before the first of them.
+    """
+    made = {side: push for side, push in pushes.items() if push is not None}
+    resisted = sum(push.ended is Ended.FORCE for push in made.values())
+    # A side that gave way says enough, whatever the others would have said.
+    known = len(made) == len(SIDES) or resisted < len(made)
+    yields_m = push_force_n(task.cell) / task.cell.stiffness_n_m
+    depths = [push.last.task_position_tip_m[2] for push in made.values()]
+    begun_m = float(begun.task_position_tip_m[2])
     # Between two opposite pushes the force must change by both of them. A sensor that is dead shows
     # the same twice.
-    change_n = max(np.ptp(forces[:2, 0]), np.ptp(forces[2:, 1]))
+    changes_n = [_force_change_n(pushes, axis) for axis in (0, 1)]
+    known_n = [change_n for change_n in changes_n if not isnan(change_n)]
     return LateralCapture(
-        resisted=sum(push.ended is Ended.FORCE for push in pushes),
-        play_x_m=_play_m(pushes[0], pushes[1], 0, yields_m),
-        play_y_m=_play_m(pushes[2], pushes[3], 1, yields_m),
-        depth_change_m=float(max(abs(depth - begun.task_position_tip_m[2]) for depth in depths)),
-        force_change_sigmas=float(change_n / task.cell.force_sigma_n),
+        resisted=resisted if known else None,
+        play_x_m=_play_m(pushes, 0, yields_m),
+        play_y_m=_play_m(pushes, 1, yields_m),
+        depth_change_m=max((abs(float(depth) - begun_m) for depth in depths), default=nan),
+        force_change_sigmas=max(known_n, default=nan) / task.cell.force_sigma_n,
     )
 
 
+def _force_change_n(pushes: Mapping[Side, ContactMotion | None], axis: int) -> float:
+    first, second = pushes.get((axis, 1.0)), pushes.get((axis, -1.0))
+    if first is None or second is None:
+        return nan
+    return float(abs(first.last.force_n[axis] - second.last.force_n[axis]))
+
+
 def _play_m(
-    first: ContactMotion, second: ContactMotion, axis: int, yields_m: float
+    pushes: Mapping[Side, ContactMotion | None], axis: int, yields_m: float
 ) -> float | None:
+    first, second = pushes.get((axis, 1.0)), pushes.get((axis, -1.0))
+    if first is None or second is None:
+        return None
     if not first.ended is second.ended is Ended.FORCE:
         return None
     apart = first.last.task_position_tip_m[axis] - second.last.task_position_tip_m[axis]

@@ -11,6 +11,7 @@ import typer
 from scipy.spatial.transform import RigidTransform
 from typer.testing import CliRunner
 
+from cellctl.cli.offline.judge_insertion import judge_insertion
 from cellctl.errors import CellError
 from cellctl.errors.calibration import WristConfigurationsDiffer
 from cellctl.errors.config import FileInvalid
@@ -36,7 +37,7 @@ DRAWING = "config/connectors/micro-d-15-pins.toml"
 def application() -> typer.Typer:
     app = typer.Typer()
     commands.add_plan_plug(app)
-    commands.add_judge_insertion(app)
+    app.command("judge-insertion")(judge_insertion)
     commands.add_calibrate_plug(app)
     commands.add_calibrate_tool_turn(app)
     return app

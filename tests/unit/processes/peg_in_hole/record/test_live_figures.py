@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cellctl.cell.contact_motion.motions import ContactSample
-from cellctl.cell.contact_motion.ticks import ContactTick
+from cellctl.cell.contact_motion.ticks import ContactTick, MotionKind
 from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.processes.peg_in_hole.record.live_figures import LiveFigures
 from cellctl.runtime.progress import Progress, ProgressBoard
@@ -19,7 +19,7 @@ def tick(time_s: float, depth_m: float, force_z_n: float, moment_x_nm: float) ->
         np.array([moment_x_nm, 0.0, 0.0]),
         0.1,
     )
-    return ContactTick(sample, np.zeros(6), 0.01, 0.001, Pace.STEP, 0)
+    return ContactTick(sample, np.zeros(6), 0.01, 0.001, Pace.STEP, 0, 1, MotionKind.FEED)
 
 
 def test_the_board_shows_the_way_to_the_seat_and_the_greatest_forces() -> None:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellctl.cell.contact_motion.motions import ContactSample
-from cellctl.cell.contact_motion.ticks import ContactTick
+from cellctl.cell.contact_motion.ticks import ContactTick, MotionKind
 from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.processes.peg_in_hole.record.tick_log import COLUMNS, TickLog, read_ticks
 
@@ -22,7 +22,7 @@ def ticked(count: int) -> TickLog:
             np.array([0.1, 0.0, 0.0]),
             0.1,
         )
-        log.take(ContactTick(sample, np.zeros(6), 0.008, 0.001, Pace.STEP, 0))
+        log.take(ContactTick(sample, np.zeros(6), 0.008, 0.001, Pace.STEP, 0, 1, MotionKind.FEED))
     return log
 
 

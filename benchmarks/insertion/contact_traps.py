@@ -1,0 +1,224 @@
+"""Pegs that are not inserted, in the contact model: fed, pushed and judged as in a run (R4).
+
+Search and face are left out: frame A lies on the true face, and the peg stands over the hole, or
+where its state wants it. The cell believes its grip force, also where the part slips with less.
+"""
+
+import asyncio
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import cast
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from benchmarks.insertion.contact_world import (
+    ContactWorld,
+    Imperfections,
+    Injected,
+    SensorFault,
+)
+from benchmarks.insertion.cycles import SENSING, CycleCell
+from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
+from cellctl.cell.guarded_motion.guard_limits import guard_limits
+from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
+from cellctl.errors.base import CellError
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.processes.peg_in_hole.cycle import feed_and_judge
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
+from cellctl.processes.peg_in_hole.record.tick_log import TickLog
+from cellctl.processes.peg_in_hole.run import contact_settings
+from fakes.scenes.socket.part import PegPart, draw_part, nominal_fit
+from fakes.world.peg.fit import Fit
+
+_BEGIN_M = 0.4e-3
+"""Height of the tip over the face at the begin."""
+_OVER = RigidTransform.from_matrix(np.diag([1.0, -1.0, -1.0, 1.0]))
+
+
+class TrapState(StrEnum):
+    """What is wrong with the peg."""
+
+    INSERTED = "nothing"
+    ON_FACE = "slips on the face"
+    ON_CHAMFER = "slips on the chamfer"
+    BLOCKED = "slips in a blocked hole"
+    WRONG_HOLE = "in a wider hole"
+    TOO_DEEP = "in a hole that is too deep"
+    FROZEN = "sensor repeats a plausible value"
+    STUCK = "sensor stays at a plausible value, with noise"
+    WRONG_FACE = "face touched 1 mm wrong"
+
+
+@dataclass(frozen=True, slots=True)
+class ContactTrap:
+    """What came of one."""
+
+    state: TrapState
+    seed: int
+    inserted: bool
+    """What the verdict says."""
+    fault: str
+    seated: bool
+    """By the truth."""
+    curve: str
+    """Ticks, as the record of a run has them."""
+
+
+@dataclass(slots=True, eq=False)
+class _Made:
+    """How one state is made."""
+
+    fit: Fit
+    aside_m: float = 0.0
+    z0_m: float = 0.0
+    grip_n: float | None = None
+    sensor: SensorFault | None = None
+
+
+def run_contact_trap(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
+    """The same seed gives the same trap."""
+    return asyncio.run(_run(cell, state, seed))
+
+
+async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
+    rng = np.random.default_rng([seed, list(TrapState).index(state)])
+    made = _MAKE[state](_Made(nominal_fit(cell.scenario.fit)), rng)
+    world, frames = _placed(cell, made, rng, seed)
+    task, log = cell.plan.task, TickLog()
+    loop = ContactLoop(
+        world.stream,
+        cast(GuardPort, world.guard),
+        world.guard.give_in(frames),
+        frames,
+        settings=contact_settings(cell.recipe, cell.plan, cell.settings),
+        observer=log,
+        clock=lambda: world.now_s,
+    )
+    if made.sensor is not None:
+        # In the middle of a feed, with whatever is felt there.
+        made.sensor.begins_s = world.now_s + float(rng.uniform(1.0, 8.0))
+
+    async def begin(phase: CyclePhase, _words: str) -> None:
+        tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+        await world.guard.arm(guard_limits(tolerance.limits, SENSING))
+
+    inserted, fault = False, ""
+    try:
+        _, _, judgement = await feed_and_judge(StreamedContact(loop), cell.plan, 0.0, begin)
+        inserted = judgement.inserted
+        if judgement.fault is not None:
+            fault = f"F{judgement.fault.number}"
+    except CellError as raised:
+        fault = f"F{raised.number}"
+    return ContactTrap(state, seed, inserted, fault, world.seated, log.text())
+
+
+def _placed(
+    cell: CycleCell, made: _Made, rng: np.random.Generator, seed: int
+) -> tuple[ContactWorld, ContactFrames]:
+    """The world with the peg over its place, and frame A on the face that was touched."""
+    task, scenario = cell.plan.task, cell.scenario
+    part = draw_part(scenario, seed, 1)
+    flange_T_tip = pose_from_xyzabc(cell.recipe.flange_T_tip)
+    base_T_task = part.cell_T_hole * _OVER * RigidTransform.from_translation([0, 0, made.z0_m])
+    azimuth = float(rng.uniform(0, 2 * np.pi))
+    x_m, y_m = made.aside_m * np.cos(azimuth), made.aside_m * np.sin(azimuth)
+    # Where the true tip is to stand; the part sits in the fingers as it was drawn.
+    height = RigidTransform.from_translation([x_m, y_m, _BEGIN_M])
+    base_T_flange = _upright(part, flange_T_tip, height)
+    sensor = scenario.force_sensors[scenario.peg.force_sensor].model_dump()
+    world = ContactWorld(
+        scenario,
+        part,
+        base_T_flange,
+        Imperfections(
+            task.cell.repeatability_m,
+            task.cell.height_sigma_m,
+            sensor["noise_n"],
+            sensor["noise_nm"],
+        ),
+        np.random.default_rng([seed, 7]),
+        injected=Injected(made.fit, made.grip_n, made.sensor),
+    )
+    task_T_tip = base_T_task.inv() * base_T_flange * flange_T_tip
+    return world, ContactFrames(base_T_task, flange_T_tip, task_T_tip.rotation)
+
+
+def _upright(part: PegPart, flange_T_tip: RigidTransform, height: RigidTransform) -> RigidTransform:
+    """The flange that stands square on the face, with the true tip at its place."""
+    square = part.cell_T_hole * height * _OVER * flange_T_tip.inv()
+    tip = (square * part.flange_T_peg).translation
+    wanted = (part.cell_T_hole * height).translation
+    return RigidTransform.from_translation(wanted - tip) * square
+
+
+def _as_drawn(made: _Made, _rng: np.random.Generator) -> _Made:
+    return made
+
+
+def _on_face(made: _Made, rng: np.random.Generator) -> _Made:
+    catch_m = made.fit.mouth_radius_m - made.fit.rim_radius_m
+    made.aside_m = catch_m + float(rng.uniform(0.3e-3, 3e-3))
+    return _slipping(made, rng)
+
+
+def _on_chamfer(made: _Made, rng: np.random.Generator) -> _Made:
+    catch_m = made.fit.mouth_radius_m - made.fit.rim_radius_m
+    made.aside_m = float(rng.uniform(made.fit.clearance_m + 0.1e-3, catch_m))
+    return _slipping(made, rng)
+
+
+def _blocked(made: _Made, rng: np.random.Generator) -> _Made:
+    made.fit = replace(made.fit, depth_m=made.fit.depth_m * float(rng.uniform(0.2, 0.9)))
+    return _slipping(made, rng)
+
+
+def _slipping(made: _Made, rng: np.random.Generator) -> _Made:
+    # Less than what the cell presses with at the end of a feed, and than what it believes.
+    made.grip_n = float(rng.uniform(4.0, 25.0))
+    return made
+
+
+def _wider(made: _Made, rng: np.random.Generator) -> _Made:
+    wider_m = float(rng.uniform(0.1e-3, 0.3e-3))
+    made.fit = replace(made.fit, bore_radius_m=made.fit.bore_radius_m + wider_m)
+    return made
+
+
+def _too_deep(made: _Made, rng: np.random.Generator) -> _Made:
+    made.fit = replace(made.fit, depth_m=made.fit.depth_m + float(rng.uniform(0.5e-3, 3e-3)))
+    return made
+
+
+def _frozen(made: _Made, _rng: np.random.Generator) -> _Made:
+    made.sensor = SensorFault(lambda _sample, last: last)
+    return made
+
+
+def _stuck(made: _Made, rng: np.random.Generator) -> _Made:
+    sigma = np.array([0.1, 0.1, 0.1, 0.003, 0.003, 0.003])
+    made.sensor = SensorFault(lambda _sample, last: last + rng.normal(0.0, sigma))
+    return made
+
+
+def _wrong_face(made: _Made, rng: np.random.Generator) -> _Made:
+    made.z0_m = 1e-3 * float(rng.choice([-1.0, 1.0]))
+    return made
+
+
+_MAKE: Mapping[TrapState, Callable[[_Made, np.random.Generator], _Made]] = {
+    TrapState.INSERTED: _as_drawn,
+    TrapState.ON_FACE: _on_face,
+    TrapState.ON_CHAMFER: _on_chamfer,
+    TrapState.BLOCKED: _blocked,
+    TrapState.WRONG_HOLE: _wider,
+    TrapState.TOO_DEEP: _too_deep,
+    TrapState.FROZEN: _frozen,
+    TrapState.STUCK: _stuck,
+    TrapState.WRONG_FACE: _wrong_face,
+}

@@ -1,0 +1,27 @@
+"""What a judge of recorded insertions answers, whatever process it belongs to."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from cellctl.calibration.checks import Checks
+from cellctl.errors.base import CellError
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedInsertion:
+    """A verdict with every figure that led to it."""
+
+    verdict: str
+    good: bool
+    """Whether a part with this verdict may go on."""
+    checks: Checks
+    fault: CellError | None
+    """None for a good insertion."""
+    record: Mapping[str, Any]
+    """All of it as plain data."""
+
+
+InsertionJudge = Callable[[Path, Path], JudgedInsertion]
+"""Takes the file of the curve and the file that says what was inserted; raises numbered faults."""

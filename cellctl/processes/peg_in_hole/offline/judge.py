@@ -1,0 +1,44 @@
+"""The judge of `cellctl judge-insertion --task`."""
+
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+from cellctl.force.judged_insertion import JudgedInsertion
+from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
+from cellctl.processes.peg_in_hole.offline.curve import PegCurve, read_curve
+from cellctl.processes.peg_in_hole.offline.evidence import evidence_of
+from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart, TaskOfCurve, read_part
+from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
+from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, judge_peg
+
+
+def judge_by_task(curve: Path, task: Path) -> JudgedInsertion:
+    """See ``InsertionJudge``; raises ``FileInvalid``, ``PegCurveInvalid``, and
+    ``RecordingUnreadable`` for an MCAP file without a message."""
+    part = read_part(task)
+    try:
+        read = read_curve(curve, force_on_hole=part.curve.force_on == "hole")
+        evidence, judgement = judge_curve(read, part)
+    except PegCurveInvalid as fault:
+        raise PegCurveInvalid(f"{curve}: {fault.detail}") from fault
+    record = _plain({"evidence": evidence.to_record(), "judgement": judgement.to_record()})
+    return JudgedInsertion(
+        judgement.verdict.value, judgement.inserted, judgement.checks, judgement.fault, record
+    )
+
+
+def judge_curve(curve: PegCurve, part: JudgedPart) -> tuple[InsertionEvidence, PegJudgement]:
+    """Evidence and verdict of a curve, by the code that judges a run."""
+    task = TaskOfCurve.of(part)
+    evidence = evidence_of(curve, task)
+    return evidence, judge_peg(evidence, task, task.seat)
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no numbers that are none: what is unknown becomes null."""
+    if isinstance(value, float):
+        return value if isfinite(value) else None
+    if isinstance(value, dict):
+        return {name: _plain(one) for name, one in value.items()}
+    return [_plain(one) for one in value] if isinstance(value, list) else value
