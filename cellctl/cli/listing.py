@@ -58,7 +58,7 @@ FILES = (
     Listed("calibrate", OFFLINE, "Calibrate from files."),
     Listed("measure", OFFLINE, "Measure the named holes of a feature file in a stereo pair."),
     Listed("plan", OFFLINE, "Check and plan the moves of a cell by its model."),
-    Listed("judge-insertion", OFFLINE, "Judge a recorded insertion, by connector or by touch."),
+    Listed("judge-insertion", OFFLINE, "Whether a part is inserted, by its recorded curve."),
     Listed("identify-payload", OFFLINE, "Identify mass, centre of mass and offsets from wrenches."),
 )
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
+from cellctl.cell.contact_motion.ends import End, arrived, first_of, force_above, when
 from cellctl.cell.contact_motion.giving_way import (
     TILT_X,
     TILT_Y,
@@ -69,7 +70,7 @@ class StreamedContact(ContactMotions):
         target = np.concatenate([task_position_tip_m, task_rotation_tip_rad])
         points, lengths = straight(self._loop.tip_command, target, _TURN_LEVER_M)
         path = self._path(points, lengths)
-        touched = _force_above(self._settings.press_n)
+        touched = force_above(self._settings.press_n)
         way = target - self._loop.tip_command
         # The flange makes both at once, so that the steps of both add up.
         shift_s = float(np.linalg.norm(way[:3])) / fastest_m_s(self._loop)
@@ -82,7 +83,7 @@ class StreamedContact(ContactMotions):
             MotionKind.MOVE_FREE,
             path,
             lambda _sample: speed,
-            _first(touched, _arrived(path)),
+            first_of(touched, arrived(path)),
             speed,
         )
         if moved.ended is Ended.TRAVEL:
@@ -106,7 +107,7 @@ class StreamedContact(ContactMotions):
         def touched(sample: ContactSample) -> Ended | None:
             return Ended.FORCE if -float(sample.force_n @ direction) > force_n else None
 
-        end = _first(touched, _arrived(path))
+        end = first_of(touched, arrived(path))
         return await self._run(
             MotionKind.TOUCH, path, lambda _sample: speed, end, speed, press=press
         )
@@ -139,7 +140,7 @@ class StreamedContact(ContactMotions):
             side_n = float(np.hypot(*sample.force_n[:2]))
             return Ended.FORCE if side_n > side_force_n else None
 
-        end = _first(_when(until), held, _arrived(path))
+        end = first_of(when(until), held, arrived(path))
         press = self._press_along(press_n)
         slid = await self._run(
             MotionKind.SLIDE, path, lambda _sample: speed, end, speed, press=press
@@ -165,7 +166,7 @@ class StreamedContact(ContactMotions):
         if held:
             push = np.concatenate([hold_force_n, np.zeros(3)])
             press = giving_way(self._loop, push, (*held, TILT_X, TILT_Y), spring=self._springs())
-        end = _first(_when(until), _arrived(path))
+        end = first_of(when(until), arrived(path))
         return await self._run(
             MotionKind.TURN, path, lambda _sample: speed, end, speed, press=press
         )
@@ -196,7 +197,7 @@ class StreamedContact(ContactMotions):
         path = self._path(*straight(self._loop.tip_command, target, _TURN_LEVER_M))
         feed = StalledFeed(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
         press = giving_way(self._loop, np.zeros(6), (X, Y, TILT_X, TILT_Y), spring=self._springs())
-        end = _first(_when(until), feed.stalled, _arrived(path))
+        end = first_of(when(until), feed.stalled, arrived(path))
         return await self._run(
             MotionKind.FEED, path, feed.speed_m_s, end, feed.slowest_m_s, press=press
         )
@@ -219,7 +220,9 @@ class StreamedContact(ContactMotions):
             pulled = float(sample.force_n[2]) > _PULL_RATIO * settings.press_n
             return Ended.FORCE if pulled else None
 
-        return await self._run(MotionKind.BACK_OUT, path, speed, _first(held, _arrived(path)), slow)
+        return await self._run(
+            MotionKind.BACK_OUT, path, speed, first_of(held, arrived(path)), slow
+        )
 
     async def hold_while(
         self, work: Coroutine[Any, Any, None], *, limit_s: float = _HOLD_S
@@ -263,7 +266,7 @@ class StreamedContact(ContactMotions):
         self._loop.begin_motion(kind)
         here = self._loop.tip_command
         path = self._path(np.stack([here, here]), np.zeros(1))
-        end = _when(until)
+        end = when(until)
         return await StreamedMotion(self._loop, path, lambda _sample: 0.0, end, hold_s, press).run()
 
     async def _run(
@@ -271,7 +274,7 @@ class StreamedContact(ContactMotions):
         kind: MotionKind,
         path: PathFollower,
         speed: Callable[[ContactSample], float],
-        end: Callable[[ContactSample], Ended | None],
+        end: End,
         slowest: float,
         *,
         press: Press | None = None,
@@ -279,31 +282,6 @@ class StreamedContact(ContactMotions):
         self._loop.begin_motion(kind)
         limit_s = _LATEST_S + _LATEST_RATIO * path.remaining / slowest
         return await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
-
-
-End = Callable[[ContactSample], Ended | None]
-
-
-def _first(*ends: End) -> End:
-    def end(sample: ContactSample) -> Ended | None:
-        return next((ended for one in ends if (ended := one(sample)) is not None), None)
-
-    return end
-
-
-def _arrived(path: PathFollower) -> End:
-    return lambda _sample: Ended.TRAVEL if path.arrived else None
-
-
-def _when(until: Condition | None) -> End:
-    return lambda sample: Ended.CONDITION if until is not None and until(sample) else None
-
-
-def _force_above(limit_n: float) -> End:
-    def end(sample: ContactSample) -> Ended | None:
-        return Ended.FORCE if float(np.linalg.norm(sample.force_n)) > limit_n else None
-
-    return end
 
 
 def _in_contact_n(sample: ContactSample) -> float:

@@ -15,7 +15,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
 )
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
-from cellctl.processes.peg_in_hole.offline.split import Parts, by_motions
+from cellctl.processes.peg_in_hole.offline.split import CurveParts, by_motions
 from cellctl.processes.peg_in_hole.offline.task_file import TaskOfCurve
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.holding import MET_NM
@@ -47,13 +47,13 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
     )
 
 
-def _capture(parts: Parts, task: TaskOfCurve) -> LateralCapture | None:
+def _capture(parts: CurveParts, task: TaskOfCurve) -> LateralCapture | None:
     if parts.begun is None or not any(parts.pushes.values()):
         return None
     return capture_of(parts.begun, parts.pushes, task)
 
 
-def _turns_that_resist(parts: Parts) -> int | None:
+def _turns_that_resist(parts: CurveParts) -> int | None:
     """Of two; None where it was not turned, or its moment was not recorded."""
     if parts.before_turns is None or len(parts.turned) < 2:
         return None
@@ -65,7 +65,7 @@ def _turns_that_resist(parts: Parts) -> int | None:
     return None if np.isnan(free_nm) else len(signs)
 
 
-def _held_pull_n(parts: Parts) -> float | None:
+def _held_pull_n(parts: CurveParts) -> float | None:
     if not parts.pulled:
         return None
     return max(float(sample.force_n[2]) for sample in parts.pulled)
@@ -95,7 +95,7 @@ def _pressed_at_lowest(curve: PegCurve, depth_m: Array) -> bool:
     return bool(axial_n[low].max() > _LEAST_SIGN_N)
 
 
-def _require_signs(curve: PegCurve, parts: Parts, task: TaskOfCurve) -> None:
+def _require_signs(curve: PegCurve, parts: CurveParts, task: TaskOfCurve) -> None:
     """The hole pushes a peg back that is fed, and a wall one that is pushed against it."""
     axial_n = np.array([-float(sample.force_n[2]) for sample in parts.feed])
     if -axial_n.min() > max(_LEAST_SIGN_N, axial_n.max()):
@@ -111,11 +111,11 @@ def _require_signs(curve: PegCurve, parts: Parts, task: TaskOfCurve) -> None:
             )
 
 
-def _split(curve: PegCurve, task: TaskOfCurve) -> Parts:
+def _split(curve: PegCurve, task: TaskOfCurve) -> CurveParts:
     return by_motions(curve, task) or by_force(curve, task)
 
 
-def _met(parts: Parts, axis: int) -> int:
+def _met(parts: CurveParts, axis: int) -> int:
     pushes = [parts.pushes[side] for side in SIDES if side[0] == axis]
     return sum(push is not None and push.ended is Ended.FORCE for push in pushes)
 

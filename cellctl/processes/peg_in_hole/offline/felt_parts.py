@@ -11,7 +11,7 @@ import numpy as np
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
-from cellctl.processes.peg_in_hole.offline.split import Parts, Samples
+from cellctl.processes.peg_in_hole.offline.split import CurveParts, Samples
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 from cellctl.processes.peg_in_hole.verdict.lateral import (
     MARGIN_M,
@@ -34,7 +34,7 @@ _LIFTED_M = 1e-3
 """Higher than this over where a peg stands without force, it is being drawn out."""
 
 
-def by_force(curve: PegCurve, task: JudgedTask) -> Parts:
+def by_force(curve: PegCurve, task: JudgedTask) -> CurveParts:
     """The parts; a side that was not pushed, or a turn that was not made, is left out."""
     samples = averaged(curve)
     depth_m = np.array([sample.task_position_tip_m[2] for sample in samples])
@@ -52,7 +52,7 @@ def by_force(curve: PegCurve, task: JudgedTask) -> Parts:
     pushes = {side: _pushed(after, side, index, task) for side, index in contacts.items()}
     last = max((index for index in contacts.values() if index is not None), default=0)
     rest = after[last + 1 :]
-    return Parts(
+    return CurveParts(
         feed=samples[begin : end + 1],
         begun=_before_pushes(after, first),
         pushes=pushes,

@@ -19,7 +19,7 @@ Samples = tuple[ContactSample, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Parts:
+class CurveParts:
     """Of one curve; what is not in it is None or empty."""
 
     feed: Samples
@@ -33,7 +33,7 @@ class Parts:
     pulled: Samples
 
 
-def by_motions(curve: PegCurve, task: JudgedTask) -> Parts | None:
+def by_motions(curve: PegCurve, task: JudgedTask) -> CurveParts | None:
     """The parts by the named motions; None for a curve without names or without a feed."""
     if curve.motions is None:
         return None
@@ -62,7 +62,7 @@ def by_motions(curve: PegCurve, task: JudgedTask) -> Parts | None:
     pressed = [samples[-1] for kind, samples in before_turns if kind is MotionKind.PRESS]
     begun, last = (pressed[0], pressed[-1]) if pressed else (None, None)
     # Every second turn goes back.
-    return Parts(feed, begun, pushes, last, tuple(turned[::2]), pulled)
+    return CurveParts(feed, begun, pushes, last, tuple(turned[::2]), pulled)
 
 
 def _side(samples: Samples) -> Side | None:

@@ -17,6 +17,7 @@ from cellctl.errors.force import ForceLimitExceeded
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.processes.peg_in_hole.cycle import CyclePlan
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, PegWedged
+from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart
 from cellctl.processes.peg_in_hole.plan.choice import SearchName, choose_search
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.record import keys
@@ -24,6 +25,7 @@ from cellctl.processes.peg_in_hole.report.pages import pages
 from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
 from cellctl.processes.peg_in_hole.search.face import FacePlan
 from cellctl.processes.peg_in_hole.state import FaceTouched
+from cellctl.processes.peg_in_hole.stations import peg_recipes
 from cellctl.processes.peg_in_hole.steps import insert_peg
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.records.async_store import AsyncRunStore
@@ -45,6 +47,7 @@ from tests.unit.processes.peg_in_hole.tasks import pin
 from tests.unit.records.conftest import start
 
 STIFFNESS_N_M = 1e5
+(RECIPE,) = peg_recipes(load_cell(Path("config/insertion-pin.toml")))
 
 
 class Bench:
@@ -64,7 +67,9 @@ class Bench:
         recorder = RunRecorder(self.store, await self.store.do(start))
         facts = cast(
             PegFacts,
-            SimpleNamespace(plan=planned(self.task), cell=SimpleNamespace(arm=self._arm())),
+            SimpleNamespace(
+                plan=planned(self.task), cell=SimpleNamespace(arm=self._arm()), recipe=RECIPE
+            ),
         )
         self.patch.setattr(insert_peg, "contact", self._contact)
         touched = FaceTouched(PegRun(facts, self.board, recorder), FRAMES, 0.0)
@@ -143,6 +148,9 @@ async def test_a_peg_in_its_hole_is_recorded_with_its_search_which_the_guard_wat
     bench = Bench(tmp_path, hole, monkeypatch)
     bench.task = replace(bench.task, fit=replace(bench.task.fit, depth_m=12e-3))
     record = await bench.run()
+    part = JudgedPart.model_validate(record.document(keys.TASK))
+    assert part.cell.stiffness_n_mm == pytest.approx(STIFFNESS_N_M / 1e3)
+    assert part.felt.greatest_n == pytest.approx(2.5 * bench.task.limits.search_n)
     assert not record.document(keys.FAILURE)
     assert record.document(keys.CYCLE)["found_by"] == "spiral"
     assert record.document(keys.TRACE)["points"][-1]["felt"] == "entry"
