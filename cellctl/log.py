@@ -3,8 +3,9 @@
 import atexit
 import logging
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TextIO, cast
 
@@ -24,6 +25,19 @@ class LogLevel(StrEnum):
     INFO = "INFO"
     WARNING = "WARNING"
     ERROR = "ERROR"
+
+
+Facts = Callable[[], Mapping[str, object]]
+
+
+@dataclass(slots=True)
+class _Said:
+    """What every line says."""
+
+    facts: Facts = dict
+
+
+_said = _Said()
 
 
 class UnfailingStream:
@@ -69,7 +83,7 @@ def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
     stderr = UnfailingStream(sys.stderr)
     stream = cast(TextIO, _by_thread(stderr) if beside else stderr)
     before: list[Processor] = [
-        structlog.contextvars.merge_contextvars,
+        _add_facts,
         structlog.processors.add_log_level,
         structlog.processors.TimeStamper(fmt="iso", utc=True),
     ]
@@ -115,8 +129,17 @@ def get(name: str) -> structlog.typing.FilteringBoundLogger:
     return logger
 
 
-@contextmanager
-def bound(**fields: object) -> Iterator[None]:
-    """Add fields (run, step, …) to every line logged inside, across awaits of this task."""
-    with structlog.contextvars.bound_contextvars(**fields):
-        yield
+def always(facts: Facts) -> None:
+    """Have every line say these, too, whoever logs it; ``always(dict)`` ends that.
+
+    ``facts`` is asked for each line, by any thread, and must not wait. What a line says itself
+    goes first. Fields that are bound to a task would not do: guards, drivers and the line log in
+    tasks and threads of their own.
+    """
+    _said.facts = facts
+
+
+def _add_facts(_: WrappedLogger, __: str, event: EventDict) -> EventDict:
+    for name, value in _said.facts().items():
+        event.setdefault(name, value)
+    return event

@@ -10,6 +10,8 @@ import pytest
 import structlog
 from xdist.scheduler import LoadScopeScheduling
 
+from cellctl import log
+
 pytest_plugins = ["tests.closing_servers", "tests.failed_again", "tests.machine_pauses"]
 
 _WHOLE_CELLS = Path(__file__).parent / "cell"
@@ -37,6 +39,7 @@ def restored_logging() -> Iterator[None]:
     yield
     root.handlers[:], root.level = handlers, level
     structlog.reset_defaults()
+    log.always(dict)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

@@ -80,6 +80,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.callback(cell.workers.close)
         unit = UnitController(cell, store)
         stack.push_async_callback(unit.background.drain)
+        log.always(unit.log_facts)
         # Before anybody can command: runs that an earlier process left open are closed as
         # interrupted, and its alarms are known again.
         await unit.open()

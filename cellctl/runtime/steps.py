@@ -114,9 +114,8 @@ class StepRunner:
             # On the disk before the step moves anything: after a crash the record names the step in
             # which it happened.
             await self.recorder.phase(step.number, step.label)
-            with log.bound(run=self.recorder.run, step=step.label):
-                _log.info("step begins")
-                value = await step.run(value)
+            _log.info("step begins")
+            value = await step.run(value)
         result: B = value
         return result
 

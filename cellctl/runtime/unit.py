@@ -130,6 +130,12 @@ class UnitController:
         """Present and last job."""
         return self._jobs
 
+    def log_facts(self) -> dict[str, object]:
+        """Run and step of this moment, for every line of the log; empty without an open run."""
+        run, step = self._jobs.run_number, self.board.current.step_label
+        known = {"run": run, "step": step or None}
+        return {name: value for name, value in known.items() if run and value}
+
     def awaits_trips(self, sensor_name: str) -> bool:
         """True while a step or a move deals with the trips of this guard itself."""
         return self._cell.awaits_trips(sensor_name) or self.board.current.contact

@@ -4,6 +4,7 @@ import errno
 import io
 import json
 import logging
+from typing import Any
 
 import pytest
 
@@ -13,20 +14,31 @@ from cellctl.log import LogLevel
 pytestmark = pytest.mark.usefixtures("restored_logging")
 
 
-def _lines(capsys: pytest.CaptureFixture[str]) -> list[dict[str, str]]:
+def _lines(capsys: pytest.CaptureFixture[str]) -> list[dict[str, Any]]:
     return [json.loads(line) for line in capsys.readouterr().err.splitlines()]
 
 
 def test_a_driver_logs_as_the_core_does(capsys: pytest.CaptureFixture[str]) -> None:
     log.configure()
-    with log.bound(run=7):
-        log.get("cellctl.daemon").info("started")
-        logging.getLogger("drivers.robot").info("%s connected", "main")
+    log.always(lambda: {"run": 7})
+    log.get("cellctl.daemon").info("started")
+    logging.getLogger("drivers.robot").info("%s connected", "main")
     own, foreign = _lines(capsys)
     assert own.keys() == foreign.keys() == {"event", "module", "level", "timestamp", "run"}
     assert foreign["event"] == "main connected"
     assert foreign["module"] == "drivers.robot"
     assert foreign["level"] == "info"
+
+
+def test_what_a_line_says_itself_goes_first(capsys: pytest.CaptureFixture[str]) -> None:
+    log.configure()
+    log.always(lambda: {"run": 7, "step": "mate"})
+    log.get("cellctl.records").info("run closed", run=6)
+    log.always(dict)
+    log.get("cellctl.records").info("rest")
+    closed, rest = _lines(capsys)
+    assert (closed["run"], closed["step"]) == (6, "mate")
+    assert not {"run", "step"} & rest.keys()
 
 
 @pytest.mark.parametrize("level", LogLevel)

@@ -153,8 +153,7 @@ class JobRunner:
 
     async def _close(self, job: Job, outcome: RunResult, fault: CellError | None) -> None:
         try:
-            with log.bound(run=job.run_number):
-                outcome = await job.close(outcome, fault)
+            outcome = await job.close(outcome, fault)
             # What the line was told when the disk did not answer stays, whatever it says later.
             self.result = Result.ABORTED if self._given_up else _TO_THE_LINE[outcome]
         except CellError:
