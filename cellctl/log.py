@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TextIO, cast
+from typing import Protocol, TextIO, cast
 
 import structlog
 from structlog.stdlib import ProcessorFormatter
@@ -40,13 +40,26 @@ class _Said:
 _said = _Said()
 
 
+class LineStream(Protocol):
+    """Where lines go; a text file is one."""
+
+    def write(self, text: str, /) -> int:
+        """A whole line; raises ``OSError``."""
+
+    def flush(self) -> None:
+        """Likewise."""
+
+    def isatty(self) -> bool:
+        """True for a terminal."""
+
+
 class UnfailingStream:
     """Where log lines go: one that cannot be written is counted, and never raises.
 
     Who logs may be about to stop an arm. A full disk under the log must not keep it from that.
     """
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: LineStream) -> None:
         self._stream = stream
         self.lost = 0
         """Lines that could not be written since the last that could."""
@@ -72,16 +85,19 @@ class UnfailingStream:
         return self._stream.isatty()
 
 
-def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
+def configure(
+    *, level: LogLevel = LogLevel.INFO, beside: bool = False, stream: LineStream | None = None
+) -> None:
     """Set up logging for this process; call once, first.
 
     Drivers and libraries log by the standard library; their lines look like all others. With
-    ``beside`` a thread writes them, so that nobody who logs waits for the disk.
+    ``beside`` a thread writes them, so that nobody who logs waits for the disk. ``stream`` takes
+    whole lines; without one they go to standard error.
     """
     for name in QUIET_LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
-    stderr = UnfailingStream(sys.stderr)
-    stream = cast(TextIO, _by_thread(stderr) if beside else stderr)
+    unfailing = UnfailingStream(sys.stderr if stream is None else stream)
+    lines = cast(TextIO, _by_thread(unfailing) if beside else unfailing)
     before: list[Processor] = [
         _add_facts,
         structlog.processors.add_log_level,
@@ -91,12 +107,12 @@ def configure(*, level: LogLevel = LogLevel.INFO, beside: bool = False) -> None:
     structlog.configure(
         processors=[*before, *after],
         wrapper_class=structlog.make_filtering_bound_logger(getattr(logging, level)),
-        logger_factory=structlog.WriteLoggerFactory(stream),
+        logger_factory=structlog.WriteLoggerFactory(lines),
         # Loggers are made at import, before this function runs. One that was used by then would
         # otherwise keep the old set-up.
         cache_logger_on_first_use=False,
     )
-    handler = logging.StreamHandler(stream)
+    handler = logging.StreamHandler(lines)
     handler.setFormatter(
         ProcessorFormatter(
             foreign_pre_chain=[*before, _add_module],

@@ -28,7 +28,8 @@ def run(
     """Run the cell until SIGTERM or Ctrl-C; motion is stopped before the process ends."""
     # Imported here, so that ``--help`` and the other commands need not load the daemon.
     from cellctl.daemon.app import Overrides, serve
+    from cellctl.daemon.journal import journal_or
 
-    log.configure(level=log_level, beside=True)
+    log.configure(level=log_level, beside=True, stream=journal_or(sys.stderr))
     overrides = Overrides(data_dir, calibration_dir, modbus_port)
     sys.exit(asyncio.run(serve(cell_file, overrides)))
