@@ -77,6 +77,8 @@ campaign-antenna: venv
 campaign-insertion: venv
 	$(BIN)/python -m benchmarks.insertion.campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.insertion.cycle_campaign $(if $(QUICK),--quick)
+	$(BIN)/python -m benchmarks.insertion.trap_campaign $(if $(QUICK),--quick)
+	$(BIN)/python -m benchmarks.insertion.fault_campaign $(if $(QUICK),--quick)
 
 # A hundred random cells take hours, for MuJoCo looks at every way each millimetre. N cells.
 campaign-planning: N = 100

@@ -29,6 +29,10 @@ from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
 from cellctl.errors.base import CellError
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.peg_in_hole.cycle import feed_and_judge
+from cellctl.processes.peg_in_hole.offline.curve import parse_curve
+from cellctl.processes.peg_in_hole.offline.judge import judge_curve
+from cellctl.processes.peg_in_hole.offline.judged_part import judged_part
+from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase, guard_force
 from cellctl.processes.peg_in_hole.record.tick_log import TickLog
 from cellctl.processes.peg_in_hole.run import contact_settings
@@ -64,9 +68,16 @@ class ContactTrap:
     """What the verdict says."""
     fault: str
     seated: bool
-    """By the truth."""
+    """By the truth: at the bottom of the hole that there is."""
+    by_curve: str
+    """What `cellctl judge-insertion` says of the ticks, or the number of its fault."""
     curve: str
     """Ticks, as the record of a run has them."""
+
+    @property
+    def stands_well(self) -> bool:
+        """At the seat of a hole as drawn. In a slipped part or a wrong hole nobody wants it."""
+        return self.state is TrapState.INSERTED and self.seated
 
 
 @dataclass(slots=True, eq=False)
@@ -115,7 +126,15 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
             fault = f"F{judgement.fault.number}"
     except CellError as raised:
         fault = f"F{raised.number}"
-    return ContactTrap(state, seed, inserted, fault, world.seated, log.text())
+    by_curve = _judged(log.text(), judged_part(cell.recipe, cell.plan, 0.0))
+    return ContactTrap(state, seed, inserted, fault, world.seated, by_curve, log.text())
+
+
+def _judged(curve: str, part: JudgedPart) -> str:
+    try:
+        return judge_curve(parse_curve(curve.encode()), part)[1].verdict.value
+    except CellError as fault:
+        return f"F{fault.number}"
 
 
 def _placed(

@@ -58,8 +58,11 @@ def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
         return to_svg(figure)
 
 
-def insertion_picture(ticks: Mapping[str, Array]) -> str:
-    """Force along the axis and across it, and moment, over depth below the face. SVG."""
+def insertion_picture(ticks: Mapping[str, Array], limit_n: float | None = None) -> str:
+    """Force along the axis and across it, and moment, over depth below the face. SVG.
+
+    ``limit_n``: of the insertion; None where the record does not say.
+    """
     with style():
         figure = Figure(figsize=(7.2, 3.6), layout="constrained")
         force, moment = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
@@ -69,8 +72,12 @@ def insertion_picture(ticks: Mapping[str, Array]) -> str:
         force.plot(*envelope(depth, -ticks["fz_n"]), color=ACCENT, linewidth=0.9, label="−Fz")
         across_nm = np.hypot(ticks["mx_nm"], ticks["my_nm"])
         moment.plot(*envelope(depth, across_nm), **line(SECOND), linewidth=0.8)
+        if limit_n is not None:
+            force.axhline(limit_n, color=LIMIT, linestyle="--", linewidth=0.8, label="limit")
         force.set_ylabel("force, N")
-        moment.set_ylabel("√(Mx² + My²), N·m")
+        # Which moment it is stands below the picture: a longer word would be higher than the axis.
+        moment.set_ylabel("moment, N·m")
         moment.set_xlabel("depth below the face, mm")
-        force.legend(loc="upper left")
+        # Over the axes: within them it would cover curve or limit.
+        force.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
         return to_svg(figure)

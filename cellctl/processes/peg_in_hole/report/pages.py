@@ -80,6 +80,15 @@ def _computed(parameter: dict[str, object]) -> str:
     return f"{value:.4g} {parameter['unit']} = {parameter['formula']}"
 
 
+def _insertion_limit_n(record: RunRecord) -> float | None:
+    """From the inputs of the guard's limits; None for runs of earlier versions."""
+    choice = record.document(keys.CHOICE) or {}
+    for limit in choice.get("guard", []):
+        if "F_i" in limit.get("inputs", {}):
+            return float(limit["inputs"]["F_i"])
+    return None
+
+
 def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
     for artefact in record.artefacts:
         if artefact.name != keys.ticks(keys.INSERTION):
@@ -90,8 +99,10 @@ def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
             # The file is exported as it is and listed with its hash; there is nothing to draw.
             continue
         yield Drawing(
-            insertion_picture(ticks),
-            "Forces and moments of the hole on the peg about its tip, over the whole stream.",
+            insertion_picture(ticks, _insertion_limit_n(record)),
+            "Forces of the hole on the peg along its axis and across it, and the moment across the "
+            "axis about its tip, √(Mx² + My²), over the whole stream. Dashed: limit of the "
+            "insertion.",
         )
     failure, result = record.document(keys.FAILURE), record.document(keys.CYCLE)
     if failure:

@@ -9,7 +9,7 @@ from tests.unit.processes.peg_in_hole.record.test_tick_log import ticked
 
 
 def test_the_way_in() -> None:
-    drawing = insertion_picture(read_ticks(ticked(20).text()))
+    drawing = insertion_picture(read_ticks(ticked(20).text()), 30.0)
     assert ET.fromstring(drawing).tag.endswith("svg")
     assert confusable(drawing) == []
 
