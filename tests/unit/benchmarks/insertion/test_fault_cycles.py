@@ -1,4 +1,4 @@
-"""Faults of the campaigns are what they are called; a trap is judged by the run and by its curve."""
+"""Faults of the campaigns are what they are called; traps are judged by run and by curve."""
 
 import numpy as np
 import pytest
