@@ -33,7 +33,8 @@ from cellctl.runtime.unit import UnitController
 from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 
-WAIT_S = 10.0
+WAIT_S = 60.0
+"""For what has to come: long, since only a test that fails waits for it to its end."""
 BY_ANNA: dict[str, Any] = {"source": Source.TERMINAL, "person": "anna"}
 
 

@@ -26,12 +26,31 @@ async def hang() -> None:
     await asyncio.Event().wait()
 
 
+class HangingDisk:
+    """Takes a write and does not answer until the test lets it."""
+
+    def __init__(self) -> None:
+        self._asked = threading.Event()
+        self._answers = threading.Event()
+
+    def hold(self) -> None:
+        """Called by the store's thread in place of the disk."""
+        self._asked.set()
+        self._answers.wait()
+
+    async def asked(self) -> None:
+        """Until the write hangs: on a busy PC its time may be up before it has begun."""
+        assert await asyncio.to_thread(self._asked.wait, WAIT_S)
+
+    def answer(self) -> None:
+        self._answers.set()
+
+
 @pytest.fixture
-def disk() -> Iterator[threading.Event]:
-    """A disk that does not answer until it is set."""
-    disk = threading.Event()
+def disk() -> Iterator[HangingDisk]:
+    disk = HangingDisk()
     yield disk
-    disk.set()
+    disk.answer()
 
 
 async def test_a_driver_that_hangs_in_its_stop(rig: DaemonRig) -> None:
@@ -48,14 +67,14 @@ async def test_a_driver_that_hangs_in_its_stop(rig: DaemonRig) -> None:
 
 
 async def test_a_disk_that_hangs_when_the_run_is_closed(
-    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: threading.Event
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: HangingDisk
 ) -> None:
     rig.bench.cell.time_limits = TimeLimits(close_record_s=SHORT_S)
     await rig.restart()
     closes = RunStore.close_run
 
     def slow(store: RunStore, *args: object, **fields: object) -> None:
-        disk.wait(10)
+        disk.hold()
         closes(store, *args, **fields)  # type: ignore[arg-type]
 
     monkeypatch.setattr(RunStore, "close_run", slow)
@@ -63,13 +82,14 @@ async def test_a_disk_that_hangs_when_the_run_is_closed(
     await rig.to(State.ABORTED)
     assert rig.shown().first_out_alarm == RecordSilent.number
     assert rig.port.ended[seq] is not Result.GOOD
-    disk.set()
+    await disk.asked()
+    disk.answer()
     assert (await rig.record()).head.result == "good", "the part itself was"
     assert rig.shown().run_result is Result.ABORTED, "what the line was told stays"
 
 
 async def test_a_disk_that_hangs_when_the_run_is_opened(
-    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: threading.Event
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, disk: HangingDisk
 ) -> None:
     rig.bench.cell.time_limits = TimeLimits(open_record_s=SHORT_S, close_record_s=SHORT_S)
     await rig.restart()
@@ -77,7 +97,7 @@ async def test_a_disk_that_hangs_when_the_run_is_opened(
     starts = RunStore.start_run
 
     def slow(store: RunStore, **fields: Any) -> int:
-        disk.wait(10)
+        disk.hold()
         return starts(store, **fields)
 
     monkeypatch.setattr(RunStore, "start_run", slow)
@@ -85,7 +105,8 @@ async def test_a_disk_that_hangs_when_the_run_is_opened(
     await rig.to(State.ABORTED)
     assert rig.shown().first_out_alarm == RecordSilent.number
     assert not any(robot.moves for robot in rig.bench.cell.robots.values())
-    disk.set()
+    await disk.asked()
+    disk.answer()
     async with asyncio.timeout(WAIT_S):
         # Completed late, and closed then; each look waits for its turn behind that.
         while (await rig.record()).head.result != "aborted":

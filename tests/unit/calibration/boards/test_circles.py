@@ -1,5 +1,7 @@
 """Grids of circles: found, put into order, and measured to a hundredth of a pixel."""
 
+import functools
+
 import numpy as np
 import pytest
 
@@ -43,6 +45,12 @@ def offsets(board: CalibrationBoard, seen: SeenGrid) -> Array:
     )
 
 
+@functools.cache
+def seen_once(board: CalibrationBoard, tilt_deg: tuple[float, float, float]) -> SeenGrid:
+    """Rendered once for all tests that look at it, which takes longer than finding the grid."""
+    return seen_grid(HEAD, board, tilt_deg, np.random.default_rng(3))
+
+
 def errors_px(board: CalibrationBoard, corners: Corners, truth_px: Array) -> tuple[Array, Ids]:
     """Off by how much, and the corners in the order of the truth: a board may look turned."""
     orders = [board.turned_ids(quarters) for quarters in board.quarter_turns]
@@ -56,7 +64,7 @@ def errors_px(board: CalibrationBoard, corners: Corners, truth_px: Array) -> tup
 def test_centres_at_oblique_views(
     board: CalibrationBoard, tilt_deg: tuple[float, float, float], dark: bool
 ) -> None:
-    seen = seen_grid(HEAD, board, tilt_deg, np.random.default_rng(3))
+    seen = seen_once(board, tilt_deg)
     image = dark_circles(seen.images.left) if dark else seen.images.left
     corners = detect_corners(image, board)
     assert corners is not None
@@ -72,7 +80,7 @@ def test_centres_at_oblique_views(
 
 
 def test_a_mirrored_image_is_named_where_the_grid_has_no_mirror_image() -> None:
-    image = seen_grid(HEAD, EVEN, TILTS[1], np.random.default_rng(3)).images.left
+    image = seen_once(EVEN, TILTS[1]).images.left
     assert detect_corners(image, EVEN) is not None
     mirrored = np.ascontiguousarray(image[:, ::-1])
     with pytest.raises(BoardMirrored, match=r"670.*4 x 10 asymmetric circle grid"):
@@ -88,12 +96,12 @@ def test_a_mirrored_image_is_named_where_the_grid_has_no_mirror_image() -> None:
     ids=str,
 )
 def test_a_part_of_a_larger_grid_is_not_taken(smaller: CalibrationBoard) -> None:
-    image = seen_grid(HEAD, STAGGERED, TILTS[0], np.random.default_rng(3)).images.left
+    image = seen_once(STAGGERED, TILTS[0]).images.left
     assert detect_corners(image, smaller) is None
 
 
 def test_a_covered_circle_is_no_grid() -> None:
-    seen = seen_grid(HEAD, GRID, TILTS[0], np.random.default_rng(3))
+    seen = seen_once(GRID, TILTS[0])
     image = seen.images.left.copy()
     x, y = np.rint(seen.left_px[30]).astype(int)
     image[y - 30 : y + 30, x - 30 : x + 30] = image[y - 29, x - 29]

@@ -43,6 +43,16 @@ def store(old: Path) -> Iterator[RunStore]:
     store.close()
 
 
+@pytest.fixture(scope="module")
+def migrated(tmp_path_factory: pytest.TempPathFactory) -> Iterator[RunStore]:
+    """Migrated once for all tests that only read."""
+    folder = tmp_path_factory.mktemp("migrated") / "old"
+    shutil.copytree(OLD, folder, ignore=shutil.ignore_patterns("expected"))
+    store = RunStore(folder, create=False)
+    yield store
+    store.close()
+
+
 def expected(run: int) -> dict[str, Any]:
     """``run.json`` as schema 1 exported it."""
     path = OLD / "expected" / f"run-{run}" / "run.json"
@@ -64,8 +74,10 @@ def version(folder: Path) -> int:
 
 
 @pytest.mark.parametrize("number", RUNS)
-def test_head_alarms_gauges_files_and_seal_are_as_they_were(store: RunStore, number: int) -> None:
-    old, record = expected(number), store.run(number)
+def test_head_alarms_gauges_files_and_seal_are_as_they_were(
+    migrated: RunStore, number: int
+) -> None:
+    old, record = expected(number), migrated.run(number)
     for name in ("serial", "mode", "result", "fault", "operator", "calibration_ids", "simulated"):
         assert getattr(record.head, name) == old[name], name
     assert record.head.process == "deck-to-frame"
@@ -84,8 +96,8 @@ def test_head_alarms_gauges_files_and_seal_are_as_they_were(store: RunStore, num
 
 
 @pytest.mark.parametrize("number", RUNS)
-def test_measurements_are_poses(store: RunStore, number: int) -> None:
-    old, record = expected(number), store.run(number)
+def test_measurements_are_poses(migrated: RunStore, number: int) -> None:
+    old, record = expected(number), migrated.run(number)
     assert len(record.poses) == len(old["measurements"]) > 0
     for pose, was in zip(record.poses, old["measurements"], strict=True):
         assert (pose.key, pose.origin) == (was["kind"], PoseOrigin.MEASURED)
@@ -98,8 +110,8 @@ def test_measurements_are_poses(store: RunStore, number: int) -> None:
 
 
 @pytest.mark.parametrize("number", RUNS)
-def test_iterations_are_passes(store: RunStore, number: int) -> None:
-    old, record = expected(number)["iterations"], store.run(number)
+def test_iterations_are_passes(migrated: RunStore, number: int) -> None:
+    old, record = expected(number)["iterations"], migrated.run(number)
     assert len(old) == (2 if number <= 3 else 0)
     assert [iteration_of(entry) for entry in record.passes] == old
 
@@ -121,8 +133,8 @@ def iteration_of(entry: LoopPass) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("number", RUNS)
-def test_the_mating_is_figures_and_a_document(store: RunStore, number: int) -> None:
-    old, record = expected(number)["mating"] or {}, store.run(number)
+def test_the_mating_is_figures_and_a_document(migrated: RunStore, number: int) -> None:
+    old, record = expected(number)["mating"] or {}, migrated.run(number)
     leaves = dict(leaves_of(old))
     assert bool(leaves) == (number <= 3)
     numbers = {path: value for path, value in leaves.items() if isinstance(value, float | int)}
@@ -150,9 +162,9 @@ def test_the_mating_is_figures_and_a_document(store: RunStore, number: int) -> N
     ],
 )
 def test_figures_have_their_keys_and_units(
-    store: RunStore, key: str, unit: str, path: tuple[str, ...]
+    migrated: RunStore, key: str, unit: str, path: tuple[str, ...]
 ) -> None:
-    found = store.run(1).newest_figures[key]
+    found = migrated.run(1).newest_figures[key]
     assert found.unit == unit
     assert found.value == dict(leaves_of(expected(1)["mating"]))[path]
 
@@ -213,11 +225,11 @@ def test_new_runs_follow_the_old_ones(store: RunStore, old: Path) -> None:
     assert store.verify() == ["run 6 was changed after it was sealed"]
 
 
-def test_everything_else_is_still_there(store: RunStore) -> None:
-    assert [entry.actor for entry in store.audit_log()] == ["OP-7"] * 3
-    assert store.line_seq() == 41
-    assert [alarm.text for alarm in store.active_alarms()] == [LOST]
-    invalidated = [entry for entry in store.calibrations() if entry.invalidated is not None]
+def test_everything_else_is_still_there(migrated: RunStore) -> None:
+    assert [entry.actor for entry in migrated.audit_log()] == ["OP-7"] * 3
+    assert migrated.line_seq() == 41
+    assert [alarm.text for alarm in migrated.active_alarms()] == [LOST]
+    invalidated = [entry for entry in migrated.calibrations() if entry.invalidated is not None]
     assert [entry.invalidated_reason for entry in invalidated] == ["collision"]
 
 

@@ -225,6 +225,13 @@ SPOILS: dict[str, tuple[Callable[[list[BoardView]], BoardView], str]] = {
 }
 
 
+@cache
+def calibration_without_pair_5() -> StereoResult:
+    """What is solved when the spoiled pair was never taken: the same whatever spoiled it."""
+    views = make_views(np.random.default_rng(3), 14)
+    return calibrate_stereo([*views[:5], *views[6:]], BOARD, IMAGE_SIZE)
+
+
 @pytest.mark.parametrize("spoil", SPOILS)
 def test_one_bad_pair_is_named_with_its_reason_and_the_rest_is_solved(spoil: str) -> None:
     views = make_views(np.random.default_rng(3), 14)
@@ -232,7 +239,7 @@ def test_one_bad_pair_is_named_with_its_reason_and_the_rest_is_solved(spoil: str
     result = calibrate_stereo([*views[:5], spoiled(views), *views[6:]], BOARD, IMAGE_SIZE)
     assert [view.name for view in result.views if not view.used] == ["view-05"]
     assert any("left out: view-05" in said and reason in said for said in result.warnings)
-    without = calibrate_stereo([*views[:5], *views[6:]], BOARD, IMAGE_SIZE)
+    without = calibration_without_pair_5()
     np.testing.assert_allclose(
         result.head.translation_m, without.head.translation_m, rtol=0, atol=2e-8
     )
