@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
-	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage lock clean install rollback bundle
+	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
 
@@ -163,11 +163,11 @@ test: check
 
 # The tests are spread over the processors already; threads of BLAS beside them only wait for each
 # other, and waiting costs them a third of the processors' time.
-test-parallel test-version test-cell test-explore test-long coverage: export OPENBLAS_NUM_THREADS = 1
+test-parallel test-version test-cell test-explore test-long coverage coverage-add: export OPENBLAS_NUM_THREADS = 1
 
 # Many containers forbid Python to keep compiled modules. Here each of the programs that the tests
 # start would compile all of cellctl anew, and each worker all tests.
-test-parallel test-version test-cell test-explore test-long coverage: export PYTHONDONTWRITEBYTECODE =
+test-parallel test-version test-cell test-explore test-long coverage coverage-add: export PYTHONDONTWRITEBYTECODE =
 
 # Three workers fill two processors, since some tests wait. Not more where there are more processors:
 # time limits within tests are those of two.
@@ -178,8 +178,10 @@ test-parallel: venv
 		$(BIN)/pytest -m "not cell and not long" $(AGAIN)
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
-# rests on numpy, scipy and OpenCV, and `test-parallel` tries it on one Python.
-COMPUTES := vision calibration force processes procedures fakes benchmarks
+# or draws rests on numpy, scipy and OpenCV, of which the lock holds one version for all Pythons, and
+# the page's scripts run in a browser: `test-parallel` tries these on one Python.
+COMPUTES := vision calibration force geometry planning processes procedures fakes benchmarks \
+	cli/offline cli/planning records/report hmi/test_browser.py
 WHERE_PYTHON_MATTERS := $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
 test-version: venv
 	$(BIN)/pytest -n 3 -m "not cell and not long" $(WHERE_PYTHON_MATTERS) || \
@@ -200,12 +202,27 @@ test-long: venv
 	$(BIN)/python -m benchmarks.faults.campaign --tenth $(SEED) --out runs/faults-tenth
 
 # Leaves out the tests marked long. The figures of each program that the tests start are combined.
-# Code that is being measured runs several times slower, hence the longer time limit.
-coverage: venv
+# Code that is being measured runs several times slower, hence the longer time limit, and a test that
+# fails must not cost the figures of all others: the report is printed in any case.
+# In pieces: make coverage-begin, then make coverage-add TESTS=tests/unit/guard as often as there are
+# pieces, then make coverage-report.
+coverage: coverage-begin
+	@failed=0; \
+	$(MAKE) coverage-add TESTS=tests WORKERS="-n 3" || failed=1; \
+	$(MAKE) coverage-add TESTS=tests/cell CELLS=cell || failed=1; \
+	$(MAKE) coverage-report || failed=1; \
+	exit $$failed
+
+coverage-begin: venv
 	$(BIN)/coverage erase
-	$(BIN)/coverage run -m pytest -q -n 2 --timeout 900 -m "not cell and not long"
-	$(BIN)/coverage run -m pytest tests/cell -q --timeout 900 -m "not long"
-	$(BIN)/coverage combine --quiet
+
+CELLS = not cell
+coverage-add: venv
+	$(BIN)/coverage run -m pytest $(TESTS) -q $(WORKERS) --timeout 900 -m "$(CELLS) and not long" || \
+		$(BIN)/coverage run -m pytest $(TESTS) -q --timeout 900 -m "$(CELLS) and not long" $(AGAIN)
+
+coverage-report: venv
+	$(BIN)/coverage combine --quiet --keep
 	$(BIN)/coverage report
 
 lock: venv

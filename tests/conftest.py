@@ -15,13 +15,21 @@ from cellctl import log
 pytest_plugins = ["tests.closing_servers", "tests.failed_again", "tests.machine_pauses"]
 
 _WHOLE_CELLS = Path(__file__).parent / "cell"
-_SHARED_IMAGES = (
-    "tests/unit/vision/",
-    "tests/unit/calibration/",
-    "tests/unit/cli/offline/test_calibrate.py",
+_WHOLE_FILES = (
+    "tests/contracts/test_writing_a_",  # packages that are installed for it
+    "tests/unit/benchmarks/",  # runs whose figures several tests read
+    "tests/unit/calibration/",  # rendered boards, solved cameras
+    "tests/unit/cli/",  # rendered images, fake cells that stand for all tests of a file
+    "tests/unit/fakes/scenes/",
+    "tests/unit/hmi/test_browser.py",  # one browser
+    "tests/unit/processes/antenna_module/",  # rendered connectors, what was taught
+    "tests/unit/processes/deck_to_frame/mating/test_mate.py",  # a mating
+    "tests/unit/processes/deck_to_frame/test_shipped_calibration.py",
+    "tests/unit/records/database/",  # sealed and migrated stores
+    "tests/unit/records/report/test_pdf.py",  # a report
+    "tests/unit/vision/",  # rendered images
 )
-_SHARED_MATING = ("tests/unit/processes/deck_to_frame/mating/test_mate.py",)
-_SHARED_REPORT = ("tests/unit/records/report/test_pdf.py",)
+"""Files whose tests share what takes seconds to make; each worker would make it for itself."""
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
 # code; pytest-timeout is there for code that hangs. The same examples in every run: a commit that
@@ -68,16 +76,16 @@ class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no 
     """Tests of whole cells fill a processor each: one worker runs them all, one after the other.
 
     This matters when pytest is called by hand with several workers; `make test` gives them one.
-    Files whose tests share rendered images, a mating or a report go out whole, so that these are
-    made once; the others singly. (`--dist loadgroup` would do, but xdist 3.8 loses the groups with
-    pytest 9.2, silently.)
+    Files whose tests share something go out whole, the others test by test, so that no worker is
+    left with a long file at the end. (`--dist loadgroup` would do, but xdist 3.8 loses the groups
+    with pytest 9.2, silently.)
     """
 
     def _split_scope(self, nodeid: str) -> str:
         if nodeid.startswith("tests/cell/"):
             return "cell"
-        shared = nodeid.startswith(_SHARED_IMAGES + _SHARED_MATING + _SHARED_REPORT)
-        return nodeid.split("::", maxsplit=1)[0] if shared else nodeid
+        whole = nodeid.startswith(_WHOLE_FILES)
+        return nodeid.split("::", maxsplit=1)[0] if whole else nodeid
 
 
 @pytest.hookimpl(optionalhook=True)
