@@ -17,6 +17,7 @@ pytest_plugins = ["tests.closing_servers", "tests.failed_again", "tests.machine_
 _WHOLE_CELLS = Path(__file__).parent / "cell"
 _WHOLE_FILES = (
     "tests/contracts/test_writing_a_",  # packages that are installed for it
+    "tests/programs/test_writing_a_process.py",
     "tests/unit/benchmarks/",  # runs whose figures several tests read
     "tests/unit/calibration/",  # rendered boards, solved cameras
     "tests/unit/cli/",  # rendered images, fake cells that stand for all tests of a file

@@ -5,7 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.guides.weighing import installed, small, written
 from tests.rigs.whole_cell.own_cell import OwnCell
+
+__all__ = ["antenna", "installed", "own", "small", "standing", "visited", "written"]
 
 
 @pytest.fixture
