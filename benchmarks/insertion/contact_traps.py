@@ -68,16 +68,11 @@ class ContactTrap:
     """What the verdict says."""
     fault: str
     seated: bool
-    """By the truth: at the bottom of the hole that there is."""
+    """By the truth: at the seat of a hole as drawn."""
     by_curve: str
     """What `cellctl judge-insertion` says of the ticks, or the number of its fault."""
     curve: str
     """Ticks, as the record of a run has them."""
-
-    @property
-    def stands_well(self) -> bool:
-        """At the seat of a hole as drawn. In a slipped part or a wrong hole nobody wants it."""
-        return self.state is TrapState.INSERTED and self.seated
 
 
 @dataclass(slots=True, eq=False)

@@ -35,6 +35,8 @@ _WANDER_LENGTH_M = 5e-3
 _LATE_SHARE, _LATE_PERIODS = 2e-3, 2.0
 """Ticks whose setpoint comes a period too late: the arm stands still for it."""
 _BLOCK = 4096
+_SAME_BORE_M = 0.05e-3
+"""A hole whose radius differs by more is another one."""
 
 
 def robot_stiffness(arm: CompliantArm) -> Array:
@@ -95,7 +97,8 @@ class ContactWorld:
         """``base_T_flange``: where the arm stands when the stream begins; the base is the cell."""
         self.now_s = 100.0
         made = injected or Injected()
-        self.fit: Fit = made.fit or nominal_fit(scenario.fit)
+        self._drawn = nominal_fit(scenario.fit)
+        self.fit: Fit = made.fit or self._drawn
         self._hole = part.cell_T_hole.as_matrix()
         self._hole_inverse = inverse_matrix(self._hole)
         self._flange_T_peg = part.flange_T_peg.as_matrix()
@@ -113,10 +116,11 @@ class ContactWorld:
 
     @property
     def seated(self) -> bool:
-        """By the truth: within 0.3 mm of the seat, in the mouth of the hole."""
+        """By the truth: within 0.3 mm of the drawn seat, in the mouth of a hole as drawn."""
         x, y, z, *_ = self.peg.pose
-        within = np.hypot(x, y) < self.fit.mouth_radius_m
-        return bool(within and -z > self.fit.depth_m - 0.3e-3)
+        within = np.hypot(x, y) < self._drawn.mouth_radius_m
+        same = abs(self.fit.bore_radius_m - self._drawn.bore_radius_m) < _SAME_BORE_M
+        return bool(same and within and abs(z + self._drawn.depth_m) < 0.3e-3)
 
     def tick(self, target: Array) -> None:
         """One period of the stream, or two where the setpoint came too late."""

@@ -48,7 +48,7 @@ def main() -> int:
                 with arguments.out.open("a", encoding="utf-8") as lines:
                     lines.write(json.dumps(_plain(trap)) + "\n")
     Console(width=140).print(table(traps))
-    return 1 if any(trap.inserted and not trap.stands_well for trap in traps) else 0
+    return 1 if any(trap.inserted and not trap.seated for trap in traps) else 0
 
 
 @cache
