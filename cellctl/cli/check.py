@@ -25,6 +25,15 @@ from cellctl.config.roles import lacking_roles
 if TYPE_CHECKING:
     from cellctl.cli.connecting.answer import Answer
 
+_UNDECIDED = (
+    "The values contradict each other, and no other one decides which is wrong: the one above, or"
+)
+
+_POSES = (
+    "contradict each other by less than 100 mm and 10 deg, as far as anything here can be compared;"
+    " whether they are right within that, only the cell shows"
+)
+
 
 def check(
     cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")],
@@ -95,6 +104,10 @@ def _show_findings(console: Console, cell_file: Path, found: Sequence[ConfigIssu
     for problem in found:
         console.print(f"F{problem.number} {_where(problem)}", markup=False)
         console.print(f"     {problem.allowed}", markup=False)
+        if problem.against:
+            console.print(f"     {_UNDECIDED}", markup=False)
+        for other in problem.against:
+            console.print(f"       {other}", markup=False)
 
 
 def _where(issue: ConfigIssue) -> str:
@@ -110,6 +123,7 @@ def _show_cell(
         console.print(f"  {key:32} {device.driver}", markup=False)
     _say_what_is_not_checked(console, cell)
     _say_what_zones_hold(console, cell)
+    console.print(f"  {'poses':32} {_POSES}", markup=False)
     model = model_path(cell_file)
     if model.exists():
         text = f"`cellctl plan check {cell_file}` holds every move against it"

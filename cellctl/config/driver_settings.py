@@ -2,9 +2,12 @@
 
 from typing import Any, cast
 
+from pydantic import BaseModel
+
 from cellctl import plugins
 from cellctl.config.devices import (
     CameraConfig,
+    DeviceConfig,
     DigitalIoConfig,
     ForceSensorConfig,
     RobotConfig,
@@ -13,6 +16,15 @@ from cellctl.errors.config import UnknownDriver
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import DigitalIo, IoNames, MotionBounds, Robot
 from cellctl.interfaces.exposure import AdjustableExposure
+
+
+def checked_settings(group: str, device: DeviceConfig) -> BaseModel:
+    """The settings with their defaults; raises ``UnknownDriver`` and pydantic's error.
+
+    ``group`` is that of its entry point (``cellctl.plugins``).
+    """
+    driver: Any = plugins.load(group, device.driver)
+    return cast(BaseModel, driver.Config.model_validate(device.settings))
 
 
 def robot_driver(robot: RobotConfig) -> tuple[type[Robot], Any]:

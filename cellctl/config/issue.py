@@ -6,6 +6,20 @@ from cellctl.errors.config import ConfigInvalid
 
 
 @dataclass(frozen=True, slots=True)
+class WrittenValue:
+    """A value that a finding is held against."""
+
+    key: str
+    value: str
+    line: int | None = None
+    """Where the key stands; None for another file."""
+
+    def __str__(self) -> str:
+        place = "" if self.line is None else f"line {self.line}: "
+        return f"{place}{self.key} = {self.value}"
+
+
+@dataclass(frozen=True, slots=True)
 class ConfigIssue:
     """One error in a cell file or a file that it names."""
 
@@ -15,8 +29,11 @@ class ConfigIssue:
     number: int = ConfigInvalid.number
     line: int | None = None
     """Where the key stands, or the table that lacks it; None for another file."""
+    against: tuple[WrittenValue, ...] = ()
+    """What this value contradicts, where nothing decides which of them is wrong."""
 
     def __str__(self) -> str:
         """Place, value and what is allowed, in one line."""
-        place = "" if self.line is None else f"line {self.line}: "
-        return f"{place}{self.key} = {self.value}: {self.allowed}"
+        written = WrittenValue(self.key, self.value, self.line)
+        others = "".join(f"; or wrong is {other}" for other in self.against)
+        return f"{written}: {self.allowed}{others}"

@@ -65,7 +65,14 @@ def examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None, dict[str,
 
 def placed(found: Iterable[ConfigIssue], lines: dict[str, int]) -> list[ConfigIssue]:
     """The same findings with the lines in which they stand."""
-    return [replace(issue, line=line_of(issue.key, lines)) for issue in found]
+    return [
+        replace(
+            issue,
+            line=line_of(issue.key, lines),
+            against=tuple(replace(one, line=lines.get(one.key)) for one in issue.against),
+        )
+        for issue in found
+    ]
 
 
 def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellConfig | None]:

@@ -119,7 +119,7 @@ def write_pose(cell_file: Path, robot: str, pose: str, values_deg: Sequence[floa
     finally:
         remove_durably(draft)
     if new:
-        facts = "; ".join(f"{one.key} = {one.value}: {one.allowed}" for one in new)
+        facts = "; ".join(str(one) for one in new)
         raise ConfigInvalid(f"{pose} is not written, the file is as it was: {facts}")
     write_durably(cell_file, text.encode("utf-8"))
 

@@ -164,7 +164,7 @@ OTHERS = (
         "max_deadman_s = 1.5 ",
         "max_deadman_s = 0.001 ",
         "robots.main.settings.max_deadman_s",
-        "at least 0.02 seconds",
+        "at least 0.1 seconds",
     ),
     deck(
         "port = 7101, reply_timeout_s = 60.0",

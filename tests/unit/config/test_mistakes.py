@@ -12,6 +12,7 @@ from cellctl.config import problems_before_commissioning
 from cellctl.config.commissioning import examine_before_commissioning
 from tests.unit.config.mistake import Mistake, Undecided
 from tests.unit.config.mistakes import MISTAKES
+from tests.unit.config.protective_mistakes import PROTECTIVE
 from tests.unit.config.second_look_figures import FIGURES, OTHERS
 from tests.unit.config.second_look_places import PLACES
 from tests.unit.config.third_day import IN_CELL_FILES, IN_DRAWINGS
@@ -43,7 +44,7 @@ def written(
 
 SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
-ALL = MISTAKES + SECOND_LOOK + THIRD_DAY
+ALL = MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE
 
 
 def test_there_are_more_than_sixty_half_by_somebody_else_and_all_differ() -> None:

@@ -109,8 +109,10 @@ _HEADS = (
     ),
     _heads_exchanged(),
     deck(_CAMERA, _CAMERA.replace("-89.5", "89.5"), _CAMERA_KEY, "did you mean [-89.5, "),
-    deck(_CAMERA, _CAMERA.replace("120.0", "-120.0"), _CAMERA_KEY, "241 mm away"),
-    deck(_CAMERA, _CAMERA.replace("120.0, 0.0", "120.0, 180.0"), _CAMERA_KEY, "did you mean"),
+    deck(_CAMERA, _CAMERA.replace("120.0", "-120.0"), _CAMERA_KEY, "241 mm and 0 deg away"),
+    deck(
+        _CAMERA, _CAMERA.replace("120.0, 0.0", "120.0, 180.0"), _CAMERA_KEY, "3 mm and 180 deg away"
+    ),
     deck(
         "measuring = [-3.29612",
         "measuring = [3.29612",
@@ -120,8 +122,8 @@ _HEADS = (
     deck_elsewhere(
         "dh = [[0.0, 675.0, 350.0",
         "dh = [[0.0, 350.0, 675.0",
-        "robots.aux_1.poses_deg.measuring",
-        "outside of the picture of head_1",
+        _CAMERA_KEY,
+        "458 mm and 0 deg away",
     ),
     deck_elsewhere(
         "0.0, 33.6262, 90.0]",

@@ -120,6 +120,15 @@ UNDECIDED = (
         "a soft small arm: there are such arms; procedure 301 measures it before anything else",
     ),
     Undecided(
+        deck(
+            "measuring = [-3.29612, -67.1374",
+            "measuring = [-3.29612, -77.1374",
+            "robots.aux_1.poses_deg.measuring",
+            "was measured at [-3.29612, -67.1374",
+        ),
+        "a measuring pose 10 degrees off from which the holes are seen: taught again perhaps",
+    ),
+    Undecided(
         deck('data_dir = "runs/cell"', 'data_dir = "demo-calibration"', "data_dir", ""),
         "one folder for runs and calibrations: their files have different names",
     ),

@@ -9,6 +9,7 @@ from cellctl.config.checks.plausible.line import line_issues
 from cellctl.config.checks.plausible.loads import load_issues
 from cellctl.config.checks.plausible.mounted import mounted_issues
 from cellctl.config.checks.plausible.places import place_issues
+from cellctl.config.checks.plausible.protective_times import protective_time_issues
 from cellctl.config.checks.plausible.recipes import recipe_issues
 from cellctl.config.checks.plausible.sensors import sensor_issues
 from cellctl.config.checks.plausible.waits import wait_issues
@@ -29,5 +30,6 @@ def plausibility_issues(cell: CellConfig, folder: Path, bad: Set[str]) -> Iterat
     yield from line_issues(cell)
     yield from sensor_issues(cell, bad)
     yield from recipe_issues(cell)
-    yield from wait_issues(cell)
+    yield from wait_issues(cell, bad)
+    yield from protective_time_issues(cell, bad)
     yield from place_issues(cell, folder)

@@ -7,10 +7,10 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.driver_settings import motion_bounds, robot_driver
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.box import Box
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
-from cellctl.processes.deck_to_frame.checks.meant_pose import meant_pose
+from cellctl.processes.deck_to_frame.checks.meant_pose import STATION_POSES, meant_pose
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
 
@@ -29,20 +29,24 @@ def reach_issues(
     if box is None or (outside := _outside(recipe, box)) is None:
         return
     what, place_m = outside
-    kinematics = _measured_at(cell, main)
-    meant = meant_pose(
-        recipe,
-        lambda other: (
-            _outside(other, box) is None
-            and (kinematics is None or not is_beside(frame_T_deck(other, kinematics)))
-        ),
-    )
+    base_T_flange = _measured_at(cell, main)
     x, y, z = place_m / MM
-    allowed = (
-        f"{meant.said}with the deck {what} the flange is at x {x:.0f}, y {y:.0f}, z {z:.0f} mm, "
+    found = (
+        f"with the deck {what} the flange is at x {x:.0f}, y {y:.0f}, z {z:.0f} mm, "
         f"outside the box that robots.{main}.settings give it"
     )
-    yield ConfigIssue(f"{key}.{meant.name}", str(list(meant.written)), allowed)
+    # The box alone holds many poses. Only where the taught pose agrees with it as well do two
+    # values speak against the one that is written.
+    meant = None if base_T_flange is None else _meant(recipe, box, base_T_flange)
+    if meant is not None:
+        name, other = meant
+        allowed = f"did you mean {other}? It agrees with the box and with {DECK_MEASURE}; {found}"
+        yield ConfigIssue(f"{key}.{name}", str(list(getattr(recipe, name))), allowed)
+        return
+    frame, deck = (_written(recipe, key, name) for name in STATION_POSES)
+    lower, upper = (np.round(corner / MM, 1).tolist() for corner in (box.lower_m, box.upper_m))
+    bounds = WrittenValue(f"robots.{main}.settings", f"a box from {lower} to {upper} mm")
+    yield ConfigIssue(frame.key, frame.value, found, against=(deck, bounds))
 
 
 def above_issues(
@@ -54,22 +58,38 @@ def above_issues(
         return
     place = frame_T_deck(recipe, base_T_flange)
     x_mm, y_mm, z_mm = place.translation / MM
+    frame, deck = (_written(recipe, key, name) for name in STATION_POSES)
+    joints = list(cell.robots[main].poses_deg[DECK_MEASURE])
+    taught = WrittenValue(f"robots.{main}.poses_deg.{DECK_MEASURE}", str(joints))
     if is_beside(place):
-        meant = meant_pose(recipe, lambda other: not is_beside(frame_T_deck(other, base_T_flange)))
         turned_deg = np.degrees(place.rotation.magnitude())
         allowed = (
-            f"{meant.said}below the deck at the taught pose {DECK_MEASURE}, within {BESIDE_MM:g} "
+            f"below the deck at the taught pose {DECK_MEASURE}, within {BESIDE_MM:g} "
             f"mm and {TURNED_DEG:g} deg; the deck is at x {x_mm:.0f}, y {y_mm:.0f} mm of the "
             f"frame, turned by {turned_deg:.0f} deg. Or teach {DECK_MEASURE} again"
         )
-        yield ConfigIssue(f"{key}.{meant.name}", str(list(meant.written)), allowed)
+        yield ConfigIssue(frame.key, frame.value, allowed, against=(deck, taught))
     elif z_mm < recipe.deck_thickness_mm + recipe.stand_off_mm:
         allowed = (
             f"at most {z_mm - recipe.stand_off_mm:.0f}: at the taught pose {DECK_MEASURE} the "
             f"outer face of the deck is {z_mm:.0f} mm above the frame, and the stand-off stays free"
         )
         thickness = f"{recipe.deck_thickness_mm:g}"
-        yield ConfigIssue(f"{key}.deck_thickness_mm", thickness, allowed)
+        against = (frame, deck, taught)
+        yield ConfigIssue(f"{key}.deck_thickness_mm", thickness, allowed, against=against)
+
+
+def _meant(
+    recipe: DeckRecipe, box: Box, base_T_flange: RigidTransform
+) -> tuple[str, list[float]] | None:
+    def fits(other: DeckRecipe) -> bool:
+        return _outside(other, box) is None and not is_beside(frame_T_deck(other, base_T_flange))
+
+    return meant_pose(recipe, fits)
+
+
+def _written(recipe: DeckRecipe, key: str, name: str) -> WrittenValue:
+    return WrittenValue(f"{key}.{name}", str(list(getattr(recipe, name))))
 
 
 def frame_T_deck(recipe: DeckRecipe, base_T_flange: RigidTransform) -> RigidTransform:

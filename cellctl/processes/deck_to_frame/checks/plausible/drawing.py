@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from cellctl.config.document.lines import key_lines
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile, parse_features
@@ -42,13 +42,20 @@ class PartDrawing:
             self.recipe_key, repr(self.written), f"{place}{key} = {value}: {allowed}"
         )
 
-    def hole_issue(self, name: str, key: str, value: str, allowed: str) -> ConfigIssue:
-        """A finding at a key of a hole."""
+    def hole_issue(
+        self,
+        name: str,
+        key: str,
+        value: str,
+        allowed: str,
+        against: tuple[WrittenValue, ...] = (),
+    ) -> ConfigIssue:
+        """A finding at a key of a hole, and the values of the cell file that it contradicts."""
         index = list(self.holes).index(name)
         line = self.lines.get(f"hole.{index}.{key}", self.lines.get(f"hole.{index}"))
         place = f"line {line}: " if line else ""
         text = f"{place}hole {name}, {key} = {value}: {allowed}"
-        return ConfigIssue(self.recipe_key, repr(self.written), text)
+        return ConfigIssue(self.recipe_key, repr(self.written), text, against=against)
 
 
 def read_drawings(recipe: DeckRecipe, key: str, folder: Path) -> tuple[PartDrawing, PartDrawing]:

@@ -10,10 +10,14 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing, read_drawings
-from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_record
+from cellctl.processes.deck_to_frame.checks.plausible.stored import (
+    calibrated_joints_deg,
+    same_joints,
+    stored_record,
+)
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.record_names import PAYLOAD_NAME
-from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN
+from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME, PAYLOAD_NAME
+from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN, MEASURING
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.registration.rigid_fit import on_a_line
 
@@ -26,6 +30,7 @@ def recipe_remarks(
         yield from _lines(drawing)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
+    yield from _taught_again(cell, recipe, folder)
 
 
 def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
@@ -78,3 +83,17 @@ def _payload(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[Con
         )
         value = f"{load.mass_kg:g} kg at {list(load.com_mm)} mm"
         yield ConfigIssue(f"robots.{main}.load", value, said)
+
+
+def _taught_again(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[ConfigIssue]:
+    """A measuring pose from which the holes are in view, and which is not that of the transfer."""
+    for role in (HEAD_1, HEAD_2):
+        carrier = cell.stereo_cameras[recipe.device(role)].carried_by or ""
+        joints = list(cell.robots[carrier].poses_deg[MEASURING])
+        known = calibrated_joints_deg(cell, folder, role)
+        if known is not None and not same_joints(known, joints):
+            said = (
+                f"the stored {BOARD_TRANSFER_NAME} was measured at {known} and holds there alone; "
+                "right if the pose was taught again, then repeat procedure 104 or 105"
+            )
+            yield ConfigIssue(f"robots.{carrier}.poses_deg.{MEASURING}", str(joints), said)

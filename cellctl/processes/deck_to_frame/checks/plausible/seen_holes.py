@@ -1,7 +1,6 @@
 """Says what is wrong where a head does not see the holes of its parts."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from itertools import combinations
 from pathlib import Path
 from typing import cast
 
@@ -9,9 +8,13 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.issue import ConfigIssue
-from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
+from cellctl.processes.deck_to_frame.checks.plausible.head_mounting import (
+    is_apart,
+    mounted_elsewhere,
+)
 from cellctl.processes.deck_to_frame.checks.plausible.sight import (
     Optics,
     base_T_carrier,
@@ -25,18 +28,15 @@ from cellctl.processes.deck_to_frame.checks.plausible.stored import (
 )
 from cellctl.processes.deck_to_frame.checks.plausible.view import HeadView
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME
 from cellctl.processes.deck_to_frame.roles import (
-    DECK_MEASURE,
     HEAD_1,
     HEAD_2,
-    MAIN,
     MEASURING,
     RETRACTED,
 )
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 
-_APART_MM, _APART_DEG = 100.0, 10.0
-"""More than bases of arms and heads on flanges are off their drawings."""
 _FACING = 0.7
 _WIDEST_MM = 400.0
 """From hole to hole of one head whose place is not known: the diagonal of a field of 0.3 m."""
@@ -60,10 +60,10 @@ def sight_issues(
         found = None
         if modelled is not None and not view.sees(modelled):
             found = _explained(view, modelled, calibrated, folder)
-        elif modelled is not None and calibrated is not None and _apart(modelled, calibrated):
-            found = _elsewhere(view, modelled, calibrated)
+        elif modelled is not None and calibrated is not None and is_apart(modelled, calibrated):
+            found = mounted_elsewhere(view, modelled, calibrated)
         elif calibrated is not None and not view.sees(calibrated):
-            found = _beside(view, calibrated, "by the stored board transfer")
+            found = _beside(view, calibrated, (view.by_transfer(),))
         elif modelled is None and calibrated is None:
             found = _spread(view)
         found = found or _board(view)
@@ -75,7 +75,7 @@ def sight_issues(
 def _explained(
     view: HeadView, modelled: RigidTransform, calibrated: RigidTransform | None, folder: Path
 ) -> ConfigIssue:
-    """The one change after which the head sees its holes, else the holes that it does not see."""
+    """What stored calibrations or another arm decide, else everything that contradicts."""
     arm = view.cell.robots[view.carrier]
     if view.sees(view.camera(view.carrier, RETRACTED)):
         allowed = f"a pose over the station; from {RETRACTED} {view.head} would see its holes: "
@@ -90,76 +90,42 @@ def _explained(
                 "and head_2 are exchanged in both feature files"
             )
             return ConfigIssue(where, repr(view.carrier), allowed)
-    written = view.cell.stereo_cameras[view.head].flange_T_camera
-    if (turned := _turned_joint(view, folder)) is not None:
-        return turned
-    if calibrated is None or view.sees(calibrated):
-        for other_pose in _with_other_signs(written or ()):
-            if view.sees(view.camera(view.carrier, MEASURING, other_pose)):
-                where = f"stereo_cameras.{view.head}.flange_T_camera"
-                allowed = f"did you mean {other_pose}? so it would see the holes of its lists"
-                return ConfigIssue(where, str(list(written or ())), allowed)
-    return _beside(view, modelled, "by the model of the cell")
+    if (moved := _moved_since(view, folder)) is not None:
+        return moved
+    if calibrated is not None and view.sees(calibrated):
+        return mounted_elsewhere(view, modelled, calibrated)
+    if calibrated is not None and not is_apart(modelled, calibrated):
+        return _beside(view, calibrated, (view.by_transfer(),))
+    return _beside(view, modelled, view.camera_from())
 
 
-def _turned_joint(view: HeadView, folder: Path) -> ConfigIssue | None:
-    """A joint of the measuring pose whose other sign would do; None where the pose is known to be
-    right, or where the other head speaks for another place of the camera."""
+def _moved_since(view: HeadView, folder: Path) -> ConfigIssue | None:
+    """A measuring pose that is not the one of the board transfer, from which the holes are seen."""
     joints = list(view.cell.robots[view.carrier].poses_deg[MEASURING])
     known = calibrated_joints_deg(view.cell, folder, view.role)
-    if known is not None and same_joints(known, joints):
+    if known is None or same_joints(known, joints):
         return None
-    mountings = {
-        camera.flange_T_camera
-        for name, camera in view.cell.stereo_cameras.items()
-        if name in {view.recipe.device(role) for role in (HEAD_1, HEAD_2)}
-    }
-    if known is None and len(mountings) > 1:
+    flange = flange_at(view.cell, view.carrier, known)
+    mounted = view.cell.stereo_cameras[view.head].flange_T_camera
+    base = base_T_carrier(view.recipe, view.bases, view.carrier)
+    if flange is None or mounted is None or base is None:
         return None
-    for other in _with_other_signs(joints):
-        flange = flange_at(view.cell, view.carrier, other)
-        written = view.cell.stereo_cameras[view.head].flange_T_camera
-        base = base_T_carrier(view.recipe, view.bases, view.carrier)
-        if flange is None or written is None or base is None:
-            return None
-        if view.sees(base * flange * pose_from_xyzabc(written)):
-            where = f"robots.{view.carrier}.poses_deg.{MEASURING}"
-            allowed = f"did you mean {other}? so {view.head} would see the holes of its lists"
-            return ConfigIssue(where, str(joints), allowed)
-    return None
-
-
-def _apart(modelled: RigidTransform, calibrated: RigidTransform) -> bool:
-    between = modelled.inv() * calibrated
-    away_m = float(np.linalg.norm(between.translation))
-    turned_deg = float(np.degrees(between.rotation.magnitude()))
-    return away_m > _APART_MM * MM or turned_deg > _APART_DEG
-
-
-def _elsewhere(view: HeadView, modelled: RigidTransform, calibrated: RigidTransform) -> ConfigIssue:
-    """A camera that sees its holes, and not from where it was when it was calibrated."""
-    written = view.cell.stereo_cameras[view.head].flange_T_camera or ()
-    meant = ""
-    for other in _with_other_signs(written):
-        camera = view.camera(view.carrier, MEASURING, other)
-        if camera is not None and not _apart(camera, calibrated):
-            meant = f"did you mean {other}? "
-            break
-    away_mm = float(np.linalg.norm((modelled.inv() * calibrated).translation)) / MM
+    if not view.sees(base * flange * pose_from_xyzabc(mounted)):
+        return None
+    where = f"robots.{view.carrier}.poses_deg.{MEASURING}"
     allowed = (
-        f"{meant}{away_mm:.0f} mm away from where the stored board transfer has this camera, by "
-        f"cell_T_base of {view.carrier} in the model of the cell"
+        f"did you mean {known}? With these joints the stored {BOARD_TRANSFER_NAME} was measured, "
+        f"and {view.head} sees the holes of its lists"
     )
-    where = f"stereo_cameras.{view.head}.flange_T_camera"
-    return ConfigIssue(where, str(list(written)), allowed)
+    return ConfigIssue(where, str(joints), allowed)
 
 
 def _board(view: HeadView) -> ConfigIssue | None:
     """A target board that would lie behind the head, or on its side."""
     settings = cast(DeckSettings, view.cell.processes[view.recipe.process])
-    mounted = view.cell.stereo_cameras[view.head].flange_T_camera
+    mounted = view.mounted_mm_deg()
     written = settings.flange_T_target_board
-    if mounted is None:
+    if not mounted:
         return None
     camera_T_board = pose_from_xyzabc(mounted).inv() * pose_from_xyzabc(written)
     facing = abs(camera_T_board.rotation.as_matrix()[2, 2])
@@ -167,43 +133,45 @@ def _board(view: HeadView) -> ConfigIssue | None:
         return None
     allowed = f"a board in the picture of {view.head}, z of the board along that of the camera"
     where = f"processes.{view.recipe.process}.flange_T_target_board"
-    return ConfigIssue(where, str(list(written)), allowed)
+    return ConfigIssue(where, str(list(written)), allowed, against=(view.mounting(),))
 
 
-def _beside(view: HeadView, camera: RigidTransform, by_what: str) -> ConfigIssue:
-    """Which of parts, poses and drawings is wrong, by which holes are outside of the picture."""
+def _beside(
+    view: HeadView, camera: RigidTransform, camera_from: tuple[WrittenValue, ...]
+) -> ConfigIssue:
+    """Which holes are outside of the picture, and every value from which that follows;
+    ``camera_from`` are those from which the place of the camera does."""
     unseen = view.unseen(camera)
-    recipe, main = view.recipe, view.recipe.device(MAIN)
     listed = {part.drawing.part: part.holes_of(view.role) for part in view.parts}
     outside = f"{', '.join(next(names for names in unseen.values() if names))}"
-    picture = f"outside of the picture of {view.head} at its pose {MEASURING}, {by_what}"
+    picture = f"outside of the picture of {view.head} at its pose {MEASURING}"
     both = len(unseen) == 2 and unseen["deck"] == unseen["frame"]
     some = any(0 < len(names) < len(listed[part]) for part, names in unseen.items())
+    frame, deck = view.frame_from(), view.deck_from()
     if some and (both or len(unseen) == 1):
         drawing = view.parts[0].drawing
         name = unseen["frame"][0]
         value = str(drawing.position_mm(name).tolist())
         also = f" (and in {view.parts[1].drawing.written})" if both else ""
         allowed = f"a place in view{also}; {outside} lies {picture}"
-        return drawing.hole_issue(name, "position_mm", value, allowed)
+        against = (*camera_from, *frame, *(deck if both else ()))
+        return drawing.hole_issue(name, "position_mm", value, allowed, against)
     if not unseen["frame"]:
-        joints = view.cell.robots[main].poses_deg[DECK_MEASURE]
+        # The frame is seen from there, so the camera is where it should be.
         allowed = f"the holes of the deck in view; {outside} lies {picture}"
-        return ConfigIssue(f"robots.{main}.poses_deg.{DECK_MEASURE}", str(list(joints)), allowed)
+        return _first(deck, allowed)
     if not unseen.get("deck", ["unknown"]):
         allowed = f"the holes of the frame in view; {outside} lies {picture}"
-        return ConfigIssue(f"{view.key}.base_T_frame", str(list(recipe.base_T_frame)), allowed)
-    joints = view.cell.robots[view.carrier].poses_deg[MEASURING]
+        return _first(frame, allowed)
     allowed = f"{outside} of {view.parts[0].drawing.written} in view; it lies {picture}"
-    where = f"robots.{view.carrier}.poses_deg.{MEASURING}"
-    return ConfigIssue(where, str(list(joints)), allowed)
+    if len(camera_from) > 1:
+        return _first((*camera_from, *frame, *deck), allowed)
+    return _first((*frame, *deck, *camera_from), allowed)  # a measured place is no key of the file
 
 
-def _with_other_signs(written: Sequence[float]) -> Iterator[list[float]]:
-    """The pose with the signs of one or two of its figures turned."""
-    for count in (1, 2):
-        for turned in combinations((index for index, one in enumerate(written) if one), count):
-            yield [-one if index in turned else one for index, one in enumerate(written)]
+def _first(values: Sequence[WrittenValue], allowed: str) -> ConfigIssue:
+    first, *others = values
+    return ConfigIssue(first.key, first.value, allowed, against=tuple(others))
 
 
 def _spread(view: HeadView) -> ConfigIssue | None:

@@ -17,7 +17,7 @@ from cellctl.processes.deck_to_frame.record_names import (
     HEAD_JOINTS,
     STOP_LATENCY_NAME,
 )
-from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MEASURING, RETRACTED
+from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MAIN, MEASURING, RETRACTED
 
 SAME_DEG = 0.1
 """In every axis: one pose that was written twice."""
@@ -76,3 +76,18 @@ def _bounds(cell: CellConfig, recipe: DeckRecipe, key: str, folder: Path) -> Ite
         if isinstance(least, int | float) and bound < least:
             allowed = f"an upper bound, more than {least:.4g}, which the stored {kind} measured"
             yield ConfigIssue(f"{key}.mating.{name}", f"{bound:g}", allowed)
+    yield from _stop_timeout(cell, recipe, folder)
+
+
+def _stop_timeout(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[ConfigIssue]:
+    """A stop that would count as refused before the arm can have obeyed it."""
+    main = recipe.device(MAIN)
+    written_s = cell.robots[main].settings.get("stop_timeout_s")
+    latency_ms = (stored_record(cell, folder, STOP_LATENCY_NAME) or {}).get("latency_ms")
+    if written_s is None or not isinstance(latency_ms, int | float):
+        return
+    if written_s < latency_ms / 1000.0:
+        allowed = (
+            f"more than {latency_ms / 1000.0:.3g}, which the stored {STOP_LATENCY_NAME} measured"
+        )
+        yield ConfigIssue(f"robots.{main}.settings.stop_timeout_s", f"{written_s:g}", allowed)
