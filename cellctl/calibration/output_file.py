@@ -2,14 +2,13 @@
 
 from pathlib import Path
 
-from cellctl.errors.config import FileInvalid
+from cellctl.atomic_files import write_durably
+from cellctl.errors.config import OutputNotWritten
 
 
 def write_file(path: Path, content: bytes) -> None:
-    """Write a result; raises ``FileInvalid`` with the reason when that cannot be done."""
+    """Write a result, whole or not at all; raises ``OutputNotWritten`` with the reason."""
     try:
-        # Not written durably: the command can be repeated, and who waits for it sees whether it
-        # failed.
-        path.write_bytes(content)
+        write_durably(path, content)
     except OSError as error:
-        raise FileInvalid(f"cannot write {path}: {error.strerror or error}") from error
+        raise OutputNotWritten(f"{path}: {error.strerror or error}") from error

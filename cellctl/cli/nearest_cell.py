@@ -2,6 +2,7 @@
 that was started in this folder, by hand or by a demonstration."""
 
 import os
+import socket
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,9 @@ SERVICE_STORE = Path("/var/lib/cellctl")
 SERVICE_CELL = Path("/etc/cellctl/cell.toml")
 _STARTED_HERE = ("runs", "runs/*/store")
 """Where `cellctl run` with the shipped cell files and `cellctl demo` keep store and socket."""
+
+_PROBE_S = 1.0
+"""A daemon accepts at once; one whose queue of connections is full is there, and slow."""
 
 SocketOption = Annotated[
     Path | None,
@@ -35,14 +39,35 @@ def nearest_store() -> Path:
 
 
 def nearest_socket() -> Path:
-    """The daemon's socket; that of the service where there is none at all."""
-    return _nearest(SERVICE_SOCKET.parent, SERVICE_SOCKET.name) or SERVICE_SOCKET
+    """The daemon's socket, one that is answered before one that a killed daemon left behind; that
+    of the service where there is none at all."""
+    found = _found(SERVICE_SOCKET.parent, SERVICE_SOCKET.name)
+    answered = (path for path in found if _is_answered(path))
+    return next(answered, found[0] if found else SERVICE_SOCKET)
 
 
 def _nearest(service: Path, name: str) -> Path | None:
-    """The service's file, also where this user may not read it; else the newest below here."""
-    # `os.path`, because `Path.exists` raises where a folder above may not be entered.
-    if os.path.exists(service / name):
-        return service / name
+    found = _found(service, name)
+    return found[0] if found else None
+
+
+def _found(service: Path, name: str) -> list[Path]:
+    """The service's file, also where this user may not read it; then those below here, the newest
+    first."""
     here = [path for pattern in _STARTED_HERE for path in Path().glob(f"{pattern}/{name}")]
-    return max(here, key=lambda path: path.stat().st_mtime, default=None)
+    newest_first = sorted(here, key=lambda path: path.stat().st_mtime, reverse=True)
+    # `os.path`, because `Path.exists` raises where a folder above may not be entered.
+    return [service / name] * os.path.exists(service / name) + newest_first
+
+
+def _is_answered(path: Path) -> bool:
+    """Whether a program listens at a socket, or at one that this user may not open."""
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
+        probe.settimeout(_PROBE_S)
+        try:
+            probe.connect(str(path))
+        except PermissionError:
+            return True  # it is the service's, and asking it says what is missing
+        except OSError:
+            return False
+    return True

@@ -56,8 +56,8 @@ class CommandRefused(LocalError):
     number = 715
     text = "The cell refuses the command"
     cause = "See the detail; the codes are the line PLC's, docs/register-map.md."
-    remedy = "Do what the detail says, or give a command that it permits; why each of the others "
-    remedy += "is refused stands in `cellctl status --json`."
+    remedy = "`cellctl status` says what to do next and which commands are permitted now; why each "
+    remedy += "of the others is refused stands in `cellctl status --json`."
     reaction = Reaction.WARN
 
 

@@ -11,8 +11,11 @@ import numpy as np
 import typer
 
 from cellctl.calibration.input_file import read_input
-from cellctl.calibration.solvers.base_frame.base_frame import calibrate_base_frame
+from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry, calibrate_base_frame
 from cellctl.calibration.solvers.base_frame.base_frame_input import BaseFrameFile
+from cellctl.calibration.solvers.base_frame.base_frame_mistakes import (
+    explanation as base_frame_mistake,
+)
 from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
 from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
 from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
@@ -20,14 +23,19 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_picture import hand_eye_pictu
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.tool.tool import calibrate_tool
 from cellctl.calibration.solvers.tool.tool_input import ToolFile
+from cellctl.calibration.solvers.tool.tool_mistakes import tool_mistakes
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_transfer
 from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
+from cellctl.calibration.solvers.transfer.transfer_mistakes import require_unmistaken
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
 from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
 from cellctl.cli.offline.invalidate import invalidate
 from cellctl.cli.offline.seal_calibrations import seal
+from cellctl.config import load_cell
+from cellctl.config.driver_settings import first_link_mm
+from cellctl.errors.calibration import AxisMotionInvalid
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -71,13 +79,51 @@ def hand_eye(
 
 
 @app.command("base-frame")
-def base_frame(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
+def base_frame(
+    file: InFile,
+    out: OutFile = None,
+    picture: Picture = None,
+    cell: Annotated[
+        Path | None, typer.Option(help="Cell file: d1 and a1 have to be those of an arm in it.")
+    ] = None,
+) -> None:
     """Base of the robot in the large-field head, from turning A1 and A2."""
     data = read_input(file, BaseFrameFile)
     a1_stops, a2_stops = ([entry.stop() for entry in axis] for axis in (data.a1, data.a2))
-    result = calibrate_base_frame(a1_stops, a2_stops, data.arm())
+    arm = data.arm()
+    try:
+        result = calibrate_base_frame(a1_stops, a2_stops, arm)
+    except AxisMotionInvalid as fault:
+        if hint := base_frame_mistake(a1_stops, a2_stops, arm):
+            raise FileInvalid(f"{file}: {hint}; then every check passes") from fault
+        raise
+    hint = "" if result.passed else base_frame_mistake(a1_stops, a2_stops, arm)
+    warnings = result.warnings + ((f"{hint}? Then every check passes",) if hint else ())
     _show("C_T_B", result.c_T_base)
-    finish(result, result.warnings, out, picture, lambda: base_frame_picture(result))
+    # A1 is found as a line, on which d1 alone says where the base is: no stop can contradict it.
+    console_of_figures().print(
+        f"note: nothing here has checked d1_mm = {arm.d1_m / MM:g}; a wrong one moves the base "
+        "along A1 by as much. Compare it with the data sheet and with the cell file",
+        style="yellow",
+        markup=False,
+    )
+    if cell is not None:
+        _compare_with_cell(file, cell, arm)
+    finish(result, warnings, out, picture, lambda: base_frame_picture(result))
+
+
+def _compare_with_cell(file: Path, cell_file: Path, arm: ArmGeometry) -> None:
+    """Raise ``FileInvalid`` where no arm of a cell has these first links."""
+    links = {name: first_link_mm(robot) for name, robot in load_cell(cell_file).robots.items()}
+    written = (arm.d1_m / MM, arm.a1_m / MM)
+    known = {name: one for name, one in links.items() if None not in one}
+    if any(np.allclose(one, written, atol=0.01) for one in known.values()):  # type: ignore[arg-type]
+        return
+    arms = "; ".join(f"{name}: {d1_mm:g} and {a1_mm:g}" for name, (d1_mm, a1_mm) in known.items())
+    raise FileInvalid(
+        f"{file}: d1_mm = {written[0]:g} and a1_mm = {written[1]:g} are of no arm in {cell_file}, "
+        f"which has {arms or 'none that is described'}"
+    )
 
 
 @app.command("transfer")
@@ -85,6 +131,7 @@ def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None
     """Heads I and II in the base by the target board (equations 1 to 3)."""
     data = read_input(file, TransferFile)
     before_head_1, before_head_2 = (data.placements(one) for one in (data.head_1, data.head_2))
+    require_unmistaken(str(file), before_head_1, before_head_2)
     result = calibrate_board_transfer(data.base(), before_head_1, before_head_2)
     _show("B_T_C1", result.base_T_c1)
     _show("B_T_C2", result.base_T_c2)
@@ -96,9 +143,11 @@ def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None
 def tool(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
     """Tool on the flange: four-point method, and three-point method if the file has it."""
     data = read_input(file, ToolFile)
-    result = calibrate_tool(data.touching, data.orienting or (), touch_sigma_m=data.touch_sigma_m)
+    orienting = data.orienting or ()
+    result = calibrate_tool(data.touching, orienting, touch_sigma_m=data.touch_sigma_m)
+    warnings = tool_mistakes(data.touching, orienting, result)
     _show("flange_T_tool", result.flange_T_tool)
-    finish(result, (), out, picture, lambda: tool_picture(result))
+    finish(result, warnings, out, picture, lambda: tool_picture(result))
 
 
 def _show(name: str, pose: UncertainPose) -> None:

@@ -35,7 +35,8 @@ def identify_payload(
 ) -> None:
     """Identify mass, centre of mass, offsets and gravity compensation from still poses.
 
-    Exit code 3 when the result fails its acceptance; it is written all the same.
+    Exit code 3 when the result fails its acceptance, or its units look like others; it is written
+    all the same.
     """
     record = parse_pose_file(_read(file))
     try:
@@ -45,14 +46,21 @@ def identify_payload(
             raise PayloadFileInvalid(f"{file}: {hint}") from fault
         raise
     console = Console(soft_wrap=True, highlight=False)
+    hint = unit_hint(result, mass_kg)
     _show(result, console)
-    _say_what_else(result, record, mass_kg, console)
+    # A result in other units fits as well as a good one: its own tests do not see them.
+    console.print("accepted" if result.accepted and not hint else "NOT accepted")
+    _say_what_else(hint or _order_hint(result, record), result, mass_kg, console)
     if out is not None:
         write_file(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
     if picture is not None:
         write_file(picture, residual_picture(result))
-    if not result.accepted:
+    if hint or not result.accepted:
         raise typer.Exit(NOT_ACCEPTED)
+
+
+def _order_hint(result: PayloadResult, record: PoseRecord) -> str:
+    return "" if result.accepted else scalar_first_hint(record)
 
 
 def _read(file: Path) -> str:
@@ -88,16 +96,12 @@ def _show(result: PayloadResult, console: Console) -> None:
         console.print("note: weight points up in this file, so it states reactions, not loads")
     for check in result.checks:
         console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
-    console.print("accepted" if result.accepted else "NOT accepted")
 
 
 def _say_what_else(
-    result: PayloadResult, record: PoseRecord, mass_kg: float | None, console: Console
+    hint: str, result: PayloadResult, mass_kg: float | None, console: Console
 ) -> None:
     """What the tests do not find: another unit, another order, a mass that nobody compared."""
-    hint = unit_hint(result, mass_kg)
-    if not hint and not result.accepted:
-        hint = scalar_first_hint(record)
     if hint:
         console.print(f"note: {hint}", style="yellow", markup=False)
     if mass_kg is None:

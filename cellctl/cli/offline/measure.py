@@ -10,7 +10,7 @@ import numpy as np
 import typer
 
 from cellctl.calibration.output_file import write_file
-from cellctl.errors.config import FileInvalid
+from cellctl.errors.config import FileInvalid, OutputNotWritten
 from cellctl.errors.vision import (
     HoleAmbiguous,
     HoleMissing,
@@ -21,6 +21,7 @@ from cellctl.errors.vision import (
 from cellctl.geometry.pose import MM
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
+from cellctl.vision.diameters import other_diameters
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measure import measure_pair
@@ -55,6 +56,7 @@ def measure(  # noqa: PLR0917 - the options of the command
         holes = _holes(read_features(features), head)
         images = read_image(left), read_image(right)
         result = _measured(images, stereo_head, holes, _method(method))
+        _require_drawn_diameters(features, result, holes)
         text = json.dumps(measurement_to_json(result, _pose(result, holes)), indent=2) + "\n"
         if picture is not None:
             write_file(picture, _picture(images, result))
@@ -65,7 +67,7 @@ def measure(  # noqa: PLR0917 - the options of the command
     except (HoleMissing, HoleAmbiguous, TooFewHoles) as fault:
         typer.echo(f"{fault}\n  {fault.remedy}", err=True)
         raise typer.Exit(EXIT_NOT_FOUND) from fault
-    except (VisionError, FileInvalid) as fault:
+    except (VisionError, FileInvalid, OutputNotWritten) as fault:
         typer.echo(f"{fault}\n  {fault.remedy}", err=True)
         raise typer.Exit(EXIT_REFUSED) from fault
     if out is None:
@@ -88,6 +90,13 @@ def _measured(
         raise ImageFileInvalid(
             "left and right are exchanged: the other way round all holes are found"
         ) from fault
+
+
+def _require_drawn_diameters(
+    features: Path, result: PairMeasurement, holes: tuple[Hole, ...]
+) -> None:
+    if hint := other_diameters(result, holes):
+        raise FileInvalid(f"{features}: {hint}")
 
 
 def read_image(path: Path) -> Image:

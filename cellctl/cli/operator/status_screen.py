@@ -27,7 +27,8 @@ _COLOURS = {
 }
 _NEXT = {
     "STOPPED": "`cellctl reset`: robots are released, and one that stands in the station lifts off",
-    "COMPLETED": "take the part out, then `cellctl reset`",
+    "COMPLETED": "a part that was joined: fasten it as the process says, open the gripper and see "
+    "that it is loose. Then `cellctl reset`: it lifts the arm off and clears the station",
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
 _NEXT_IN_IDLE = {

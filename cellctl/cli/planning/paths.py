@@ -29,7 +29,7 @@ def paths(
     """
     scene = open_scene(cell_file, model)
     # The libraries of planning may be missing, which opening the scene says.
-    from cellctl.planning.output import write_output
+    from cellctl.calibration.output_file import write_file
     from cellctl.planning.ways.check_moves import check_moves
     from cellctl.planning.ways.plan_ways import plan_ways, with_ways
     from cellctl.planning.ways.write_ways import with_ways_written
@@ -49,7 +49,7 @@ def paths(
         console.print(str(fault), markup=False)
     if out is not None:
         text = cell_file.read_text(encoding="utf-8")
-        write_output(out, with_ways_written(text, planned).encode())
+        write_file(out, with_ways_written(text, planned).encode())
         console.print(f"written: {out}; read it, and try each way at low speed", markup=False)
     if faults:
         console.print(f"{len(faults)} moves are not good all the same", style="bold red")

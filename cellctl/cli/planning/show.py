@@ -20,12 +20,12 @@ def show(
     """Draw the model from three sides, arms at their first taught pose, other poses as ghosts."""
     scene = open_scene(cell_file, model)
     # The libraries of planning may be missing, which opening the scene says.
-    from cellctl.planning.output import write_output
+    from cellctl.calibration.output_file import write_file
     from cellctl.planning.pictures.glb import cell_glb
     from cellctl.planning.pictures.views import three_views
 
-    write_output(picture, three_views(scene))
+    write_file(picture, three_views(scene))
     typer.echo(f"written: {picture}")
     if glb is not None:
-        write_output(glb, cell_glb(scene))
+        write_file(glb, cell_glb(scene))
         typer.echo(f"written: {glb}")

@@ -31,6 +31,12 @@ def note(
     with opened_store(data_dir) as store:
         add_note(store, run, terminal_user(), by, values, instrument=instrument, remark=remark)
         notes = notes_of(run, store.audit_log())
+        closed = store.run(run).head.result is not None
+    if not closed:
+        typer.echo(
+            f"run {run} is not closed: a daemon is at work on it, or was killed and closes it as "
+            "interrupted when it is started again; the note is kept"
+        )
     for entry in notes:
         words = note_words(entry)
         typer.echo(f"run {run}: {words} ({said_by(entry)}, {entry.time:%Y-%m-%d %H:%M} UTC)")

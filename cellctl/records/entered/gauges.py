@@ -62,6 +62,12 @@ def require_plausible(hole: str, diameter_mm: float, source: str) -> None:
 def require_gauge(record: RunRecord, hole: str) -> None:
     """Raise ``GaugeRefused`` for a result that cannot be of this run."""
     head = record.head
+    if head.result is None:
+        # Not closed by a daemon that was killed either: the next start does that, as interrupted.
+        raise GaugeRefused(
+            f"run {head.number} is not closed: a daemon is at work on it, or was killed and closes "
+            "it when it is started again"
+        )
     if head.result in _NO_PART:
         raise GaugeRefused(f"run {head.number} is {head.result}: it has no finished part")
     if head.mode == DRY_RUN:

@@ -99,6 +99,11 @@ def surroundings(notes: Sequence[AuditEntry]) -> dict[str, SurroundingReading]:
     }
 
 
+def remark_of(entry: AuditEntry) -> str:
+    """What a note says in words; empty where it holds values alone."""
+    return str(entry.detail.get(_REMARK, ""))
+
+
 def note_words(entry: AuditEntry) -> str:
     """A note in one line, without who and when."""
     return ", ".join(_words(entry.detail))

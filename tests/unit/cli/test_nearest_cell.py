@@ -1,6 +1,7 @@
 """Commands find the store and the socket of the cell that somebody has just worked with."""
 
 import os
+import socket
 from pathlib import Path
 
 import pytest
@@ -48,8 +49,8 @@ def test_the_service_goes_before_what_was_started_here(here: Path) -> None:
 
 
 def test_a_daemon_that_was_started_here_is_found(here: Path) -> None:
-    socket = left_by(Path("runs/demo/store"), "cellctl.sock", age_s=0.0)
-    assert nearest_socket() == socket
+    left = left_by(Path("runs/demo/store"), "cellctl.sock", age_s=0.0)
+    assert nearest_socket() == left
 
 
 def test_without_any_the_places_are_named(here: Path) -> None:
@@ -66,3 +67,14 @@ def test_runs_are_listed_without_naming_a_folder(here: Path) -> None:
     assert done.exit_code == 0
     assert "SAT-0042" in done.stdout
     assert "runs/demo/store" in done.stderr
+
+
+def test_a_live_daemon_is_found_beside_a_newer_socket_that_nobody_answers(here: Path) -> None:
+    live = Path("runs/live/store/cellctl.sock")
+    live.parent.mkdir(parents=True)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as listening:
+        listening.bind(str(live))
+        listening.listen()
+        left_by(Path("runs/dead/store"), "cellctl.sock", age_s=-1e9)
+        left_by(here / "run", "cellctl.sock", age_s=0.0)
+        assert nearest_socket() == live

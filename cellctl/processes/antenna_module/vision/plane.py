@@ -6,7 +6,7 @@ calibration boards do; the frame is then turned by half a turn about its x.
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -100,6 +100,8 @@ class _ExpectedTable(InputFile):
 
 class PlaneFile(InputFile):
     """The file, in mm and degrees."""
+
+    seen_from_afar: ClassVar[bool] = True
 
     camera_id: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
     camera_T_plane: InputPose

@@ -32,12 +32,30 @@ def fault_box(record: RunRecord, audit: Sequence[AuditEntry]) -> FaultBox | None
         cause, remedy = cause_and_remedy(head.fault_number or 0)
         text = head.fault or f"F{head.fault_number:03d}"
         return FaultBox(text, _last_step(record), cause, remedy)
-    command = _BY_COMMAND.get(RunResult(head.result)) if head.result else None
+    if head.result is None or head.result == RunResult.INTERRUPTED:
+        return _cut_off(record)
+    command = _BY_COMMAND.get(RunResult(head.result))
     if command is None:
         return None
     given = next((entry for entry in reversed(audit) if entry.action == command), None)
     who = "it is not recorded by whom" if given is None else f"by {given.actor}, {when(given.time)}"
     return FaultBox(f"Ended by the command {command}, {who}", _last_step(record), MISSING, MISSING)
+
+
+def _cut_off(record: RunRecord) -> FaultBox:
+    """A run that no daemon closed while it was made."""
+    if record.head.result is None:
+        text = "Not closed: this run is at work, or its daemon was killed"
+    else:
+        text = "Interrupted: the daemon ended in the middle of this run; what follows is unknown"
+    return FaultBox(
+        text,
+        _last_step(record),
+        "The daemon was killed, or the PC went down; the end of this run was written at the next "
+        "start.",
+        "Nothing below says that the part is good: values were taken before the interruption. "
+        "Look at part and arm, and make the run again.",
+    )
 
 
 def cause_and_remedy(number: int) -> tuple[str, str]:

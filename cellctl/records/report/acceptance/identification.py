@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from cellctl.records.entered.notes import SURROUNDINGS, surroundings
+from cellctl.records.entered.notes import SURROUNDINGS, remark_of, surroundings
 from cellctl.records.entered.said_by import said_by
 from cellctl.records.entries import AuditEntry, RunHead
 from cellctl.records.report.sections import (
@@ -50,6 +50,7 @@ def identification(
         ("devices", "simulated" if head.simulated else "real"),
         ("software", head.software),
         *_surroundings(notes),
+        *_remarks(notes),
     )
     return ReportSection("Identification", (FactList(facts),))
 
@@ -64,6 +65,13 @@ def _surroundings(notes: Sequence[AuditEntry]) -> Iterator[tuple[str, str]]:
     missing = [one.label for one in SURROUNDINGS if one.key not in known]
     if missing:
         yield ", ".join(missing), UNKNOWN
+
+
+def _remarks(notes: Sequence[AuditEntry]) -> Iterator[tuple[str, str]]:
+    """What people had to say of the run, above the signatures and not only in the timeline."""
+    for entry in notes:
+        if said := remark_of(entry):
+            yield "remark", f"{said} ({said_by(entry)}, {when(entry.time)})"
 
 
 def devices(cell: Mapping[str, Any]) -> ReportSection:

@@ -125,8 +125,11 @@ def _gauges(record: RunRecord) -> Iterator[RequirementGroup]:
 
 def _gauge(record: RunRecord, hole: str, limit: Limit) -> Requirement:
     entry = next((gauge for gauge in record.gauges if gauge.hole == hole), None)
+    # What was entered first and then replaced is part of what is signed below the table.
+    earlier = [gauge for gauge in record.gauge_history if gauge.hole == hole and gauge != entry]
+    replaced = ", ".join(f"{gauge.diameter_mm:.2f} mm of {gauge.source}" for gauge in earlier)
     return Requirement(
-        title=f"gauge through hole {hole}",
+        title=f"gauge through hole {hole}" + (f" (replaces {replaced})" if replaced else ""),
         value=None if entry is None else entry.diameter_mm,
         unit="mm",
         required=limit,

@@ -15,6 +15,7 @@ from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyeResult, Setup
 from cellctl.cli.offline.calibrate import app
 from cellctl.errors.calibration import (
+    BoardPoseInvalid,
     CalibrationCamerasSwapped,
     RobotCameraMismatch,
     WrongBoard,
@@ -172,6 +173,42 @@ def test_links_that_are_none_are_refused(tmp_path: Path, metres: dict[str, float
     assert next(iter(metres)) in str(result.exception)
 
 
+@pytest.mark.parametrize(
+    ("mistake", "said"),
+    [
+        ({"a1_sign": -1}, "a1_sign = 1"),
+        ({"a2_sign": -1}, "a2_sign = 1"),
+        ({"d1_mm": 500, "a1_mm": 1045}, "d1_mm and a1_mm are exchanged"),
+    ],
+)
+def test_a_mistake_in_the_arm_is_named(
+    tmp_path: Path, mistake: dict[str, float], said: str
+) -> None:
+    result = call("base-frame", "--in", base_frame_file(tmp_path, **mistake))
+    assert result.exit_code == 3
+    assert said in result.output
+
+
+def test_stops_of_the_other_axis_are_named(tmp_path: Path) -> None:
+    written_file = json.loads(base_frame_file(tmp_path).read_text())
+    other = {"a1": written_file["a2"], "a2": written_file["a1"]}
+    result = call("base-frame", "--in", base_frame_file(tmp_path, **other))
+    assert isinstance(result.exception, FileInvalid)
+    assert "the stops of A1 stand in a2" in str(result.exception)
+
+
+def test_a_height_that_no_stop_contradicts_is_held_against_the_cell(tmp_path: Path) -> None:
+    wrong = base_frame_file(tmp_path, d1_mm=1075)
+    alone = call("base-frame", "--in", wrong)
+    assert alone.exit_code == 0
+    assert "nothing here has checked d1_mm = 1075" in alone.output
+    cell = Path(__file__).parents[4] / "config" / "deck.toml"
+    compared = call("base-frame", "--in", wrong, "--cell", cell)
+    assert isinstance(compared.exception, FileInvalid)
+    assert "main: 1045 and 500" in str(compared.exception)
+    assert call("base-frame", "--in", base_frame_file(tmp_path), "--cell", cell).exit_code == 0
+
+
 def discs(rng: np.random.Generator, pose: RigidTransform, sigma_m: float) -> list[dict[str, Any]]:
     points = transfer_case.board_points(rng, pose, np.full(3, sigma_m))
     return [
@@ -184,7 +221,7 @@ def discs(rng: np.random.Generator, pose: RigidTransform, sigma_m: float) -> lis
     ]
 
 
-def test_transfer(tmp_path: Path) -> None:
+def transfer_data() -> dict[str, Any]:
     rng = np.random.default_rng(0)
     case = transfer_case
     data: dict[str, Any] = {"c_T_base": written(case.C_T_BASE)}
@@ -194,17 +231,53 @@ def test_transfer(tmp_path: Path) -> None:
     ):
         large = discs(rng, case.C_T_BASE * base_T_head * seen, 1e-5)
         data[key] = [{"large_field": large, "head": discs(rng, seen, 2e-6)}]
-    result = call("transfer", "--in", save(tmp_path / "t.json", data))
+    return data
+
+
+def test_transfer(tmp_path: Path) -> None:
+    result = call("transfer", "--in", save(tmp_path / "t.json", transfer_data()))
     assert result.exit_code == 0, result.output
     assert "C1_T_C2: X" in result.output
 
 
-def test_tool(tmp_path: Path) -> None:
+def test_tables_of_a_transfer_that_were_exchanged_or_copied_are_named(tmp_path: Path) -> None:
+    data = transfer_data()
+    (one,) = data["head_1"]
+    exchanged = data | {"head_1": [{"large_field": one["head"], "head": one["large_field"]}]}
+    result = call("transfer", "--in", save(tmp_path / "exchanged.json", exchanged))
+    assert isinstance(result.exception, BoardPoseInvalid)
+    assert "head_1, entry 1: 'large_field' and 'head' are exchanged" in str(result.exception)
+    copied = data | {"head_2": data["head_1"]}
+    result = call("transfer", "--in", save(tmp_path / "copied.json", copied))
+    assert isinstance(result.exception, BoardPoseInvalid)
+    assert "one was copied" in str(result.exception)
+
+
+def tool_data() -> dict[str, Any]:
     rng = np.random.default_rng(0)
-    data = {
-        "touching": [written(pose) for pose in tool_case.touching(rng, 5, 5e-5)],
+    return {
+        "touching": [written(pose) for pose in tool_case.touching(rng, 6, 5e-5)],
         "orienting": [written(pose) for pose in tool_case.orienting(rng, 5e-5)],
     }
+
+
+def test_touches_that_do_not_fit_are_named(tmp_path: Path) -> None:
+    data = tool_data()
+    data["touching"][2][0] += 5.0
+    result = call("tool", "--in", save(tmp_path / "tool.json", data))
+    assert result.exit_code == 3
+    assert "touching, entry 3 does not fit the others" in result.output
+
+
+def test_orienting_poses_in_the_other_order_are_named(tmp_path: Path) -> None:
+    data = tool_data()
+    data["orienting"] = [data["orienting"][index] for index in (0, 2, 1)]
+    result = call("tool", "--in", save(tmp_path / "tool.json", data))
+    assert "the second and the third of the orienting poses exchanged" in result.output
+
+
+def test_tool(tmp_path: Path) -> None:
+    data = tool_data()
     picture = tmp_path / "tool.png"
     result = call("tool", "--in", save(tmp_path / "tool.json", data), "--picture", picture)
     assert result.exit_code == 0, result.output

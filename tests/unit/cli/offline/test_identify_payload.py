@@ -91,6 +91,8 @@ def test_another_unit_is_named(
 ) -> None:
     result = CliRunner().invoke(app, [str(rewritten(csv_file, factors)), *options])
     assert f"note: {said}" in result.output
+    assert "NOT accepted" in result.output
+    assert result.exit_code == 3
 
 
 def test_a_real_part_that_stands_first_is_named(csv_file: Path) -> None:

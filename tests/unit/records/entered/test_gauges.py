@@ -14,7 +14,7 @@ from cellctl.records.entered.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.entries import DRY_RUN, Document
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
-from tests.unit.records.page import read
+from tests.unit.records.page import read, text_of
 
 HOLES = {name: {"least_mm": 5.8, "most_mm": 6.0} for name in ("P1", "P5")}
 
@@ -113,3 +113,28 @@ def test_the_command_tells_of_the_entry_before(store: RunStore, run: int) -> Non
     by = f"OP-7, typed by {terminal_user()}"
     assert f"5.70 mm ({by}), at least 5.80 mm: fail, gauge PG-3" in told
     assert f"5.99 mm ({by}), at least 5.80 mm: pass" in told
+
+
+def test_a_run_that_nobody_has_closed_has_no_part_to_gauge(store: RunStore) -> None:
+    open_run = start(store)
+    with pytest.raises(GaugeRefused, match=r"is not closed.*killed"):
+        store.set_gauge(open_run, "P1", 5.95, "OP-7")
+    assert store.run(open_run).gauge_history == ()
+
+
+def test_a_note_on_an_open_run_is_kept_and_says_that_it_is_open(store: RunStore) -> None:
+    arguments = ["note", str(start(store)), "--by", "OP-7", "--remark", "power failed"]
+    done = CliRunner().invoke(app, [*arguments, "--data-dir", str(store.path)])
+    assert done.exit_code == 0, done.output
+    assert "is not closed" in done.output
+    assert "power failed" in done.output
+
+
+def test_the_first_page_says_what_a_gauge_has_replaced(
+    store: RunStore, run: int, tmp_path: Path
+) -> None:
+    store.set_gauge(run, "P5", 5.70, "OP-7", "PG-3")
+    store.set_gauge(run, "P5", 5.99, "OP-8", "PG-4")
+    page = text_of(export_run(store, run, tmp_path))
+    first = page.split("Timeline")[0]
+    assert "gauge through hole P5 (replaces 5.70 mm of OP-7)" in first

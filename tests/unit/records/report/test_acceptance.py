@@ -233,3 +233,24 @@ def test_parts_and_surroundings_that_nobody_recorded_say_so(
         "accepted by",
     ):
         assert expected in page, expected
+
+
+def test_a_remark_stands_above_the_signatures(store: RunStore, tmp_path: Path) -> None:
+    run = good_run(store)
+    add_note(store, run, ROOT, "bo", {}, remark="door was open")
+    page = " ".join(text_of(export_run(store, run, tmp_path)).split())
+    assert f"remark door was open (bo, typed by {ROOT}" in page.split("Timeline")[0]
+
+
+@pytest.mark.parametrize("result", [RunResult.INTERRUPTED, None])
+def test_a_run_that_was_cut_off_says_so_above_its_figures(
+    store: RunStore, tmp_path: Path, result: RunResult | None
+) -> None:
+    run = start(store)
+    store.begin_phase(run, 50, "mate")
+    if result is not None:
+        store.close_run(run, result)
+    page = " ".join(text_of(export_run(store, run, tmp_path)).split())
+    assert ("Interrupted: the daemon ended" if result else "Not closed: this run") in page
+    assert "Step: 50, mate" in page
+    assert "make the run again" in page

@@ -110,6 +110,21 @@ def test_exchanged_intrinsics_are_refused(tmp_path: Path) -> None:
     assert "F464 Plane and camera calibration do not belong together" in done.stderr
 
 
+def test_a_plane_in_metres_is_named(tmp_path: Path) -> None:
+    picture().write(tmp_path)
+    plane = json.loads((tmp_path / "plane.json").read_text())
+    pose = plane["camera_T_plane"]
+    in_metres = (
+        [[*row[:3], row[3] / 1e3] for row in pose[:3]] + pose[3:]
+        if len(pose) == 4
+        else [value / 1e3 for value in pose[:3]] + pose[3:]
+    )
+    (tmp_path / "plane.json").write_text(json.dumps(plane | {"camera_T_plane": in_metres}))
+    done = run(tmp_path)
+    assert done.exit_code == 1
+    assert "camera_T_plane: millimetres belong here; these look like metres" in done.stderr
+
+
 def test_changed_intrinsics_are_refused(tmp_path: Path) -> None:
     picture().write(tmp_path)
     camera = json.loads((tmp_path / "cam.json").read_text())

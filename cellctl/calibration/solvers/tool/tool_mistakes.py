@@ -1,0 +1,69 @@
+"""Which mistake explains touches that do not meet in one point, or a tool that points backwards."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.calibration.solvers.tool.tool import ToolResult, calibrate_tool
+from cellctl.errors import CellError
+from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
+
+_LEAST_WITHOUT = 5
+"""Touches of which one may be left out: four are needed, and four may fit by luck."""
+_LONGEST_M = 2.0
+"""From flange to tip; longer tools no arm of this size carries."""
+
+_BACKWARDS = 0.5
+"""Cosine: a tool across the flange may point a little back, one by 120° was taught otherwise."""
+
+
+def tool_mistakes(
+    touching: Sequence[RigidTransform], orienting: Sequence[RigidTransform], result: ToolResult
+) -> tuple[str, ...]:
+    """What is probably wrong with the poses, as warnings; empty for good ones."""
+    said = []
+    if not result.passed and (hint := _explanation(touching)):
+        said.append(hint)
+    tip_m = np.asarray(result.flange_T_tool.pose.translation)
+    if np.linalg.norm(tip_m) > _LONGEST_M:
+        said.append(f"the tip is {np.linalg.norm(tip_m) / MM:.0f} mm from the flange")
+    z_axis = result.flange_T_tool.pose.rotation.as_matrix()[:, 2]
+    if orienting and z_axis @ tip_m < -_BACKWARDS * float(np.linalg.norm(tip_m)):
+        said.append(
+            "z of the tool points from its tip back to the flange: are the second and the third "
+            "of the orienting poses exchanged, or was the tip moved along -x or -y?"
+        )
+    return tuple(said)
+
+
+def _explanation(touching: Sequence[RigidTransform]) -> str:
+    tried = {
+        "the poses are inverted (flange_T_base)": [pose.inv() for pose in touching],
+        "the angles of the poses are in radians": [_from_radians(pose) for pose in touching],
+    }
+    for words, changed in tried.items():
+        if _passes(changed):
+            return f"{words}? Then the touches meet in one point"
+    if len(touching) >= _LEAST_WITHOUT:
+        alone = [
+            number
+            for number in range(len(touching))
+            if _passes([*touching[:number], *touching[number + 1 :]])
+        ]
+        if len(alone) == 1:
+            return f"touching, entry {alone[0] + 1} does not fit the others, which fit without it"
+    return ""
+
+
+def _passes(touching: Sequence[RigidTransform]) -> bool:
+    try:
+        return calibrate_tool(touching).passed
+    except CellError:
+        return False
+
+
+def _from_radians(pose: RigidTransform) -> RigidTransform:
+    """The pose whose angles were written in radians and read as degrees."""
+    written = pose_to_xyzabc(pose)
+    return pose_from_xyzabc([*written[:3], *np.degrees(written[3:])])

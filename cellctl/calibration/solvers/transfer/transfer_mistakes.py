@@ -1,0 +1,47 @@
+"""Readings of a board transfer that cannot be of the heads that they are written for."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from cellctl.calibration.solvers.transfer.board_transfer import BoardPlacement
+from cellctl.errors.calibration import BoardPoseInvalid
+from cellctl.geometry.pose import MM, pose_error
+from cellctl.geometry.uncertain import UncertainPose
+
+_SAME_M = 1e-6
+"""Below the noise of any head: two readings that agree so well are one that was copied."""
+
+
+def require_unmistaken(
+    file: str, before_head_1: Sequence[BoardPlacement], before_head_2: Sequence[BoardPlacement]
+) -> None:
+    """Raise ``BoardPoseInvalid`` that names an exchanged or a copied table.
+
+    Which of two small heads is I nothing in the file can tell: the cell file has their arms.
+    """
+    for head, placements in (("head_1", before_head_1), ("head_2", before_head_2)):
+        for number, placement in enumerate(placements, start=1):
+            large_m = _distance_m(placement.c_T_board.head_T_board)
+            small_m = _distance_m(placement.head_T_board.head_T_board)
+            if small_m > large_m:
+                raise BoardPoseInvalid(
+                    f"{file}: {head}, entry {number}: 'large_field' and 'head' are exchanged? The "
+                    f"board is {small_m / MM:.0f} mm from the small head and {large_m / MM:.0f} mm "
+                    "from the large-field head"
+                )
+    for first in before_head_1:
+        for second in before_head_2:
+            if _same(first.head_T_board.head_T_board, second.head_T_board.head_T_board):
+                raise BoardPoseInvalid(
+                    f"{file}: head_1 and head_2 have the same readings of the board: one was copied"
+                )
+
+
+def _distance_m(pose: UncertainPose) -> float:
+    return float(np.linalg.norm(pose.pose.translation))
+
+
+def _same(one: UncertainPose, other: UncertainPose) -> bool:
+    shift, turn = pose_error(one.pose, other.pose)
+    return float(np.linalg.norm(shift)) < _SAME_M and float(np.linalg.norm(turn)) < _SAME_M
