@@ -4,7 +4,7 @@ from pathlib import Path
 
 from cellctl.config.checks.plausible.protective_times import PROTECTIVE_TIMES
 
-_GUARD = Path(__file__).parents[3] / "docs" / "guard.md"
+_GUARD = Path(__file__).parents[5] / "docs" / "guard.md"
 
 
 def test_the_page_has_every_time_with_its_bounds_and_reason() -> None:
