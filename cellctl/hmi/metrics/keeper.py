@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from prometheus_client import CollectorRegistry, generate_latest
+from prometheus_client import CollectorRegistry, disable_created_metrics, generate_latest
 
 from cellctl import log
 from cellctl.hmi.event_stream import Streams
@@ -18,6 +18,8 @@ class MetricsKeeper:
     """Has a registry of its own: that of the library has figures of this process beside them."""
 
     def __init__(self, hub: Hub, streams: Streams, data_dir: Path) -> None:
+        # Else each counter would have a second series with the time of its begin.
+        disable_created_metrics()
         self._hub = hub
         self._registry = CollectorRegistry()
         self._history = CellHistory(self._registry)
