@@ -27,8 +27,8 @@ _COLOURS = {
 }
 _NEXT = {
     "STOPPED": "`cellctl reset`: robots are released, and one that stands in the station lifts off",
-    "COMPLETED": "a part that was joined: fasten it as the process says, open the gripper and see "
-    "that it is loose. Then `cellctl reset`: it lifts the arm off and clears the station",
+    "COMPLETED": "fasten a joined part as its process says, and open the gripper; then "
+    "`cellctl reset`: it lifts off and clears the station",
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
 _NEXT_IN_IDLE = {
