@@ -26,6 +26,7 @@ from cellctl.config.recipe import Recipe
 from cellctl.config.roles import lacking
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
 from cellctl.fault_catalogue import misnumbered
+from cellctl.spelling import nearest
 
 
 def load_cell(path: Path) -> CellConfig:
@@ -139,6 +140,7 @@ def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
         cell = validated(CellConfig, raw)
     except ValidationError as error:
         found, cell = model_issues("", error, CellConfig, raw), None
+        found = [_of_another_device(issue, raw) for issue in found]
     recipe_models = list(_recipes(recipes, found))
     needed = {recipe.process for recipe in recipe_models if recipe is not None}
     setting_models = _settings(settings, needed, found)
@@ -146,6 +148,18 @@ def _parse(raw: dict[str, Any]) -> tuple[list[ConfigIssue], CellConfig | None]:
         return found, None
     known = tuple(recipe for recipe in recipe_models if recipe is not None)
     return found, cell.model_copy(update={"recipes": known, "processes": setting_models})
+
+
+def _of_another_device(issue: ConfigIssue, raw: Mapping[str, Any]) -> ConfigIssue:
+    """A table of a device whose name was misspelt makes another device, one without a driver."""
+    section, _, rest = issue.key.partition(".")
+    name, _, key = rest.partition(".")
+    if key != "driver" or issue.value != "(missing)" or not isinstance(raw.get(section), dict):
+        return issue
+    others = [other for other in raw[section] if other != name]
+    known = f"; other tables here: {', '.join(others)}" if others else ""
+    allowed = f"{nearest(name, others)}the name of a driver, in [{section}.{name}]{known}"
+    return replace(issue, allowed=allowed)
 
 
 def _read_toml(path: Path) -> tuple[str, dict[str, Any]]:

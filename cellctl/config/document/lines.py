@@ -25,6 +25,8 @@ def key_lines(text: str) -> dict[str, int]:
         if depth == 0 and (match := _TABLE.match(line)):
             table = _table_path(match[1], _plain(match[2]), arrays)
             lines.setdefault(table, number)
+            # [robots.arm.settings] without [robots.arm] before it: the device begins here.
+            lines.setdefault(".".join(table.split(".")[:2]), number)
             continue
         if depth == 0 and (match := _KEY.match(line)):
             path = ".".join(part for part in (table, _plain(match[1])) if part)

@@ -258,3 +258,13 @@ def test_the_first_link_is_taken_from_the_dh_table_where_it_is_not_stated(tmp_pa
     path.write_text(re.sub(r"^dh = .*\n", "", path.read_text(), count=1, flags=re.MULTILINE))
     missing = {problem.key for problem in problems(path)}
     assert {"robots.main.d1_mm", "robots.main.a1_mm"} <= missing
+
+
+def test_a_misspelt_device_is_named_with_the_one_that_was_meant(tmp_path: Path) -> None:
+    text = (Path(__file__).parents[3] / "config" / "deck.toml").read_text()
+    path = tmp_path / "cell.toml"
+    path.write_text(text.replace("[robots.aux_1.poses_deg]", "[robots.aux1.poses_deg]"))
+    (issue,) = problems(path)
+    assert issue.key == "robots.aux1.driver"
+    assert issue.line == text[: text.index("[robots.aux_1.poses_deg]")].count("\n") + 1
+    assert "did you mean 'aux_1'? the name of a driver" in issue.allowed
