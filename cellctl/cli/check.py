@@ -41,13 +41,18 @@ def check(
     connect: Annotated[
         bool, typer.Option("--connect", help="Ask every device too; moves and switches nothing.")
     ] = False,
+    moves: Annotated[
+        bool, typer.Option("--moves", help="Hold every move against the model beside the file.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
     socket: SocketOption = None,
 ) -> None:
     """Check a cell file; exit code 1, with every error and what is allowed, when it is not good.
 
     With --connect every device of a good file is asked, and the exit code is 1 also when one is
-    silent or another one than the file says. Nothing is asked while a daemon has the cell.
+    silent or another one than the file says. Nothing is asked while a daemon has the cell. With
+    --moves every pose and every move that the processes of a good file can command is held against
+    the model of the cell, and the exit code is 1 also when one of them is not good.
     """
     examined = examine_before_commissioning(cell_file)
     found = [*examined.errors, *_left_open(cell_file)]
@@ -59,14 +64,31 @@ def check(
         if cell is not None:
             _show_cell(console, cell_file, cell, remarks)
     answers = _asked(cell, cell_file, socket) if connect and cell is not None else []
+    bad_moves = list(_bad_moves(console, cell_file, quiet=as_json)) if moves and not found else []
     if as_json:
-        typer.echo(as_plain(_as_json(cell_file, found, remarks, answers)))
+        typer.echo(as_plain(_as_json(cell_file, found, remarks, answers, bad_moves)))
     elif answers:
         from cellctl.cli.connecting.connect import show
 
         show(console, answers)
-    if found or not all(answer.good for answer in answers):
+    if found or bad_moves or not all(answer.good for answer in answers):
         raise typer.Exit(1)
+
+
+def _bad_moves(console: Console, cell_file: Path, *, quiet: bool) -> Iterator[str]:
+    """Every move that is not good, with its number; said at once, because all take minutes."""
+    # Planning is an extra, and its libraries take longer to load than a file to check.
+    from cellctl.cli.planning.move_findings import move_findings
+    from cellctl.cli.planning.opening import open_scene
+
+    good = True
+    for text in move_findings(open_scene(cell_file, None)):
+        good = False
+        yield text
+        if not quiet:
+            console.print(text, markup=False)
+    if good and not quiet:
+        console.print("  every move is free, by the model", markup=False)
 
 
 def _asked(cell: CellConfig, cell_file: Path, socket: Path | None) -> "list[Answer]":
@@ -86,13 +108,15 @@ def _as_json(
     found: Sequence[ConfigIssue],
     remarks: Sequence[ConfigIssue],
     answers: "Sequence[Answer]",
+    bad_moves: Sequence[str],
 ) -> dict[str, Any]:
     return {
         "cell_file": str(cell_file),
-        "good": not found and all(answer.good for answer in answers),
+        "good": not found and not bad_moves and all(answer.good for answer in answers),
         "errors": [asdict(problem) for problem in found],
         "remarks": [asdict(remark) for remark in remarks],
         "devices": [answer.as_json() for answer in answers],
+        "moves": list(bad_moves),
     }
 
 
@@ -126,7 +150,7 @@ def _show_cell(
     console.print(f"  {'poses':32} {_POSES}", markup=False)
     model = model_path(cell_file)
     if model.exists():
-        text = f"`cellctl plan check {cell_file}` holds every move against it"
+        text = f"`cellctl check --moves {cell_file}` holds every move against it"
         console.print(f"  {f'model {model.name}':32} {text}", markup=False)
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"

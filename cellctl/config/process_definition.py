@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 from cellctl import plugins
 from cellctl.config.base import Section
@@ -13,6 +13,9 @@ from cellctl.config.recipe import Recipe
 from cellctl.config.roles import Role
 from cellctl.config.stated_moves import StatedMove
 from cellctl.errors.config import UnknownDriver
+
+if TYPE_CHECKING:
+    from cellctl.config.stated_views import StatedMeasurement
 
 
 class NoSettings(Section):
@@ -92,6 +95,20 @@ class ProcessDefinition(ABC):
 
         Asked by offline planning alone, with a cell file that was checked; by default none. Raises
         ``ArmNotDescribed`` where the kinematics of an arm are needed and not known.
+        """
+        return ()
+
+    @classmethod
+    def measurements(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        folder: Path,  # noqa: ARG003
+    ) -> "Iterable[StatedMeasurement]":
+        """What the process measures with heads that arms carry; by default nothing.
+
+        Asked by offline planning alone, with a cell file that was checked. Raises
+        ``HeadNotDescribed`` where a head is not calibrated or not mounted.
         """
         return ()
 

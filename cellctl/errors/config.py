@@ -155,3 +155,30 @@ class NoMovesStated(PlanningError):
     text = "No moves to check"
     cause = "No recipe's process states its moves yet, or the cell file has no recipe."
     remedy = "Nothing is known to be free: try every move at low speed. See docs/planning.md."
+
+
+class HeadNotDescribed(PlanningError):
+    """Nothing says what a head sees."""
+
+    number = 130
+    text = "Head is not described"
+    cause = "The model has no section for it, or it is not calibrated or not mounted on an arm."
+    remedy = "Write [stereo_cameras.NAME] into the model, and calibrate the head."
+
+
+class NoViewpoint(PlanningError):
+    """No pose of a head fulfils everything that a measurement asks for."""
+
+    number = 131
+    text = "No viewpoint was found"
+    cause = "Every pose that was tried breaks a condition; the detail counts which ones."
+    remedy = "Move the base or the part, choose other holes, or change what the model demands."
+
+
+class NoViewsStated(PlanningError):
+    """The processes of a cell state no measurement that could be planned."""
+
+    number = 132
+    text = "No measurements to plan"
+    cause = "No recipe's process states what its heads measure, or the cell file has no recipe."
+    remedy = "Teach the poses of the cameras by hand. See docs/planning.md."

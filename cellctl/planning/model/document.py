@@ -10,6 +10,7 @@ from cellctl.config.devices import DeviceName
 NO_SHIFT: WrittenPose = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 Point = tuple[Millimetres, Millimetres, Millimetres]
 Size = Annotated[float, Field(ge=0.1, le=20_000, allow_inf_nan=False)]
+Distance = Annotated[float, Field(ge=20.0, le=10_000, allow_inf_nan=False)]
 Margin = Annotated[float, Field(ge=0.0, le=500.0, allow_inf_nan=False)]
 DegreesPerSecond = Annotated[float, Field(gt=0.0, le=1000.0)]
 SixSpeeds = tuple[
@@ -79,7 +80,34 @@ class ArmKeys(Section):
     """What stays free around it: its uncertainty, cables, and what a stop leaves its way by."""
     rated_deg_s: SixSpeeds
     """Speeds of the joints at 100 %."""
+    joint_margin_deg: Annotated[float, Field(ge=0.0, le=45.0)] = 5.0
+    """What a planned pose keeps from the limits of every joint."""
     bodies: Annotated[dict[DeviceName, LinkBodyKeys], Field(min_length=1)]
+
+
+class HeadKeys(Section):
+    """A stereo head of the cell file: where it sees well, and what its images are like."""
+
+    sharp_mm: tuple[Distance, Distance]
+    """Nearest and farthest place in focus, along the line of sight."""
+    margin_px: Annotated[float, Field(ge=10.0, le=1000.0)] = 60.0
+    """Between a rim and the edge of the image: parts do not stand exactly."""
+    greatest_angle_deg: Annotated[float, Field(gt=0.0, le=60.0)] = 35.0
+    """Between a line of sight and the axis of a bore."""
+    lit_within_deg: Annotated[float, Field(gt=0.0, le=90.0)] = 45.0
+    """Between the lamp's axis and the way to a hole; the lamp sits in the middle of the head and
+    shines along the middle of both lines of sight."""
+    contrast_grey: Annotated[float, Field(gt=0.0, le=255.0)]
+    """Step of grey across a rim of a part, the face against the dark of a bore."""
+    noise_grey: Annotated[float, Field(gt=0.0, le=100.0)]
+    """Standard deviation of the grey of a face, noise and texture together."""
+    blur_px: Annotated[float, Field(gt=0.0, le=5.0)]
+
+    @model_validator(mode="after")
+    def _nearest_first(self) -> Self:
+        if not self.sharp_mm[0] < self.sharp_mm[1]:
+            raise ValueError("sharp_mm must be so: nearest < farthest")
+        return self
 
 
 class ApproachKeys(Section):
@@ -97,4 +125,6 @@ class ModelDocument(Section):
     robots: Annotated[dict[DeviceName, ArmKeys], Field(min_length=1)]
     fixtures: dict[DeviceName, BodyKeys] = Field(default_factory=dict)
     """What never moves: parts in their station, tables, fences, keep-out spaces of cables."""
+    stereo_cameras: dict[DeviceName, HeadKeys] = Field(default_factory=dict)
+    """Needed by `cellctl plan viewpoints` alone."""
     approaches: tuple[ApproachKeys, ...] = ()

@@ -1,5 +1,6 @@
 """Reads the model of a cell, and says everything that is wrong with it."""
 
+import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import combinations
@@ -10,13 +11,26 @@ from pydantic import ValidationError
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config.cell import CellConfig
-from cellctl.errors.config import ArmNotDescribed, ConfigInvalid, ConfigUnreadable, SizeImplausible
+from cellctl.errors.config import (
+    ArmNotDescribed,
+    ConfigInvalid,
+    ConfigUnreadable,
+    HeadNotDescribed,
+    SizeImplausible,
+)
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
-from cellctl.planning.model.document import BodyKeys, CapsuleKeys, LinkBodyKeys, ModelDocument
+from cellctl.planning.model.document import (
+    BodyKeys,
+    CapsuleKeys,
+    HeadKeys,
+    LinkBodyKeys,
+    ModelDocument,
+)
 from cellctl.planning.model.shapes import BoxShape, CapsuleShape, Shape
 from cellctl.planning.model.surface import read_surface
 from cellctl.planning.scene.arm import PlannedArm, planned_arm
 from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.planning.scene.head_limits import HeadLimits, ImageQuality
 from cellctl.planning.scene.solid import Solid
 
 _FARTHEST_M = 5.0
@@ -39,7 +53,8 @@ def read_model(cell: CellConfig, path: Path) -> CellScene:
     solids = tuple(_solids(document, path.parent))
     _check_approaches(document, solids, path)
     approaches = {frozenset(near.bodies): near.clearance_mm * MM for near in document.approaches}
-    return CellScene(cell, arms, solids, approaches)
+    heads = {name: _head(cell, name, keys) for name, keys in document.stereo_cameras.items()}
+    return CellScene(cell, arms, solids, approaches, heads)
 
 
 def _document(path: Path) -> ModelDocument:
@@ -63,7 +78,28 @@ def _arm(cell: CellConfig, document: ModelDocument, name: str) -> PlannedArm:
         raise ArmNotDescribed(f"robots.{name}: not a robot of the cell file, which has {known}")
     keys = document.robots[name]
     return planned_arm(
-        name, cell.robots[name], pose_from_xyzabc(keys.cell_T_base), np.radians(keys.rated_deg_s)
+        name,
+        cell.robots[name],
+        pose_from_xyzabc(keys.cell_T_base),
+        np.radians(keys.rated_deg_s),
+        math.radians(keys.joint_margin_deg),
+    )
+
+
+def _head(cell: CellConfig, name: str, keys: HeadKeys) -> HeadLimits:
+    if name not in cell.stereo_cameras:
+        known = ", ".join(cell.stereo_cameras) or "none"
+        raise HeadNotDescribed(
+            f"stereo_cameras.{name}: not one of the cell file, which has {known}"
+        )
+    nearest_mm, farthest_mm = keys.sharp_mm
+    return HeadLimits(
+        nearest_m=nearest_mm * MM,
+        farthest_m=farthest_mm * MM,
+        margin_px=keys.margin_px,
+        greatest_angle_rad=math.radians(keys.greatest_angle_deg),
+        lit_within_rad=math.radians(keys.lit_within_deg),
+        quality=ImageQuality(keys.contrast_grey, keys.noise_grey, keys.blur_px),
     )
 
 

@@ -28,6 +28,8 @@ class PlannedArm:
     driver: type[Robot]
     settings: Any
     """The settings of the driver as an instance of its ``Config``."""
+    joint_margin_rad: float
+    """What a planned pose keeps from the limits of every joint."""
 
     def link_frames(self, joints_rad: Array) -> Array:
         """``cell_T_link`` of base and all six links, shape (7, 4, 4), at joints of shape (6,)."""
@@ -65,11 +67,17 @@ class PlannedArm:
 
 
 def planned_arm(
-    name: str, config: RobotConfig, cell_T_base: RigidTransform, rated_rad_s: Array
+    name: str,
+    config: RobotConfig,
+    cell_T_base: RigidTransform,
+    rated_rad_s: Array,
+    joint_margin_rad: float,
 ) -> PlannedArm:
     """The arm as its driver's settings state it; raises ``ArmNotDescribed``."""
     driver, settings = robot_driver(config)
     chain = driver.chain(settings)
     if chain is None:
         raise ArmNotDescribed(f"robots.{name}: its settings have no dh table")
-    return PlannedArm(name, config, chain, cell_T_base, rated_rad_s, driver, settings)
+    return PlannedArm(
+        name, config, chain, cell_T_base, rated_rad_s, driver, settings, joint_margin_rad
+    )

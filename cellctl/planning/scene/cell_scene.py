@@ -10,6 +10,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.geometry.box import Box
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.arm import PlannedArm
+from cellctl.planning.scene.head_limits import HeadLimits
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.scene.surroundings import Clearances, StandingSolid, Surroundings
 
@@ -32,6 +33,8 @@ class CellScene:
     solids: tuple[Solid, ...]
     approaches: Clearances
     """What stays free, in m, between two bodies in an approach."""
+    heads: Mapping[str, HeadLimits]
+    """Of the stereo heads that the model describes."""
 
     def around(
         self,

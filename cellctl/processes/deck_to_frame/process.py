@@ -21,6 +21,7 @@ from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
     from cellctl.calibration.store.kind import Kinds
+    from cellctl.config.stated_views import StatedMeasurement
     from cellctl.processes.deck_to_frame.run import OpenRun
     from cellctl.processes.deck_to_frame.run_facts import RunFacts
     from cellctl.processes.deck_to_frame.state import Ready
@@ -98,6 +99,15 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         from cellctl.processes.deck_to_frame.stated_moves import deck_moves
 
         return deck_moves(cell, cast(DeckRecipe, recipe))
+
+    @classmethod
+    def measurements(
+        cls, cell: CellConfig, recipe: Recipe, folder: Path
+    ) -> "Iterable[StatedMeasurement]":
+        """Frame and deck, each by both heads."""
+        from cellctl.processes.deck_to_frame.stated_views import deck_measurements
+
+        return deck_measurements(cell, cast(DeckRecipe, recipe), folder)
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

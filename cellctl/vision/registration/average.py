@@ -62,9 +62,13 @@ def _mean_hole(column: tuple[HoleMeasurement, ...]) -> HoleMeasurement:
     )
 
 
+def remaining_variance(frames: int) -> float:
+    """Share of one frame's variance that stays in the mean of so many frames of one scene."""
+    share = _SYSTEMATIC_SHARE**2
+    return share + (1.0 - share) / frames
+
+
 def _mean(values: Sequence[Array], covariances: Sequence[Array]) -> tuple[Array, Array]:
     """Mean, and its covariance: the random part shrinks with the frames, the common one stays."""
     typical = np.mean(covariances, axis=0)
-    share = _SYSTEMATIC_SHARE**2
-    remaining = share + (1.0 - share) / len(values)
-    return np.mean(values, axis=0), np.asarray(typical * remaining)
+    return np.mean(values, axis=0), np.asarray(typical * remaining_variance(len(values)))

@@ -9,7 +9,9 @@ from cellctl.cli.planning.app import app
 from cellctl.cli.planning.opening import open_scene
 from cellctl.errors.config import (
     ConfigUnreadable,
+    HeadNotDescribed,
     NoMovesStated,
+    NoViewsStated,
     OutputNotWritten,
     PlanningNotInstalled,
 )
@@ -85,3 +87,33 @@ def test_without_the_extra_the_fault_says_so(monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setattr(builtins, "__import__", without)
     with pytest.raises(PlanningNotInstalled, match="fcl"):
         open_scene(Path(DECK), None)
+
+
+@pytest.mark.long  # a search in all directions: half a minute on a free core
+def test_viewpoints_are_planned_and_written(tmp_path: Path) -> None:
+    out = tmp_path / "deck.toml"
+    code, output = run("viewpoints", DECK, "--out", str(out))
+    assert code == 0
+    assert "planned: sigma" in output
+    assert "with other equipment:" in output
+    changed = set(out.read_text().splitlines()) - set(Path(DECK).read_text().splitlines())
+    assert len(changed) == 2
+
+
+def test_viewpoints_of_a_cell_without_stated_measurements_are_refused(tmp_path: Path) -> None:
+    text = Path("config/deck.model.toml").read_text(encoding="utf-8")
+    model, out = tmp_path / "pin.model.toml", tmp_path / "pin.toml"
+    model.write_text(text[: text.index("[robots.aux_1]")].replace("robots.main", "robots.arm"))
+    with pytest.raises(NoViewsStated):
+        run("viewpoints", "config/insertion-pin.toml", "--model", str(model), "--out", str(out))
+    assert not out.exists()
+
+
+def test_a_head_without_its_section_leaves_no_file(tmp_path: Path) -> None:
+    text = Path("config/deck.model.toml").read_text(encoding="utf-8")
+    model, out = tmp_path / "deck.model.toml", tmp_path / "deck.toml"
+    start, end = text.index("[stereo_cameras.head_2]"), text.index("[fixtures]")
+    model.write_text(text[:start] + text[end:])
+    with pytest.raises(HeadNotDescribed, match="head_2"):
+        run("viewpoints", DECK, "--model", str(model), "--out", str(out))
+    assert not out.exists()

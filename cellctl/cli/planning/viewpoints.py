@@ -1,0 +1,46 @@
+"""`cellctl plan viewpoints`: where the heads of a cell look from, for a person's review."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
+from cellctl.errors.config import NoViewsStated
+
+Out = Annotated[
+    Path | None, typer.Option("--out", help="Write the cell file with the poses here; else none.")
+]
+
+
+def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) -> None:
+    """Plan from where each head measures, by how certain the measured pose will be.
+
+    What is written has to be read by a person and tried at low speed, and what is calibrated at
+    these poses (the board transfer) is void then.
+    """
+    scene = open_scene(cell_file, model)
+    # The libraries of planning may be missing, which opening the scene says.
+    from cellctl.planning.output import write_output
+    from cellctl.planning.views.gains import gains
+    from cellctl.planning.views.plan_viewpoints import ViewpointPlan, stated_measurements
+    from cellctl.planning.views.view_text import gain_line, views_lines
+    from cellctl.planning.views.write_viewpoints import with_viewpoints_written
+
+    console = Console(soft_wrap=True, highlight=False)
+    planned = []
+    for measurement in stated_measurements(scene, cell_file.parent):
+        views = ViewpointPlan(scene, measurement).search()
+        planned.append(views)
+        for line in views_lines(views):
+            console.print(line, markup=False)
+        console.print("with other equipment:", markup=False)
+        for gain in gains(scene, views.placement):
+            console.print(gain_line(gain), markup=False)
+    if not planned:
+        raise NoViewsStated(f"{cell_file}")
+    if out is not None:
+        text = cell_file.read_text(encoding="utf-8")
+        write_output(out, with_viewpoints_written(text, planned).encode())
+        console.print(f"written: {out}; read it, try each pose at low speed, and calibrate there")

@@ -1,0 +1,101 @@
+"""The predicted pose against the estimator on drawn measurements, and its parts."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.geometry.pose import pose_error
+from cellctl.geometry.uncertain import UncertainPose, perturbed
+from cellctl.planning.views.hole_image import image_covariance, pixels
+from cellctl.planning.views.plan_viewpoints import taught_placement
+from cellctl.planning.views.prediction import SOURCES, Placement, predicted_pose
+from cellctl.vision.camera.triangulation import triangulate
+from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
+from cellctl.vision.registration.part_pose import part_pose
+from cellctl.vision.registration.relative_pose import relative_pose
+from tests.unit.planning.views.deck_views import SCENE, measurement
+
+PLACEMENT = taught_placement(SCENE, measurement())
+DRAWS = 150
+
+
+def drawn_part(placement: Placement, index: int, moved: RigidTransform, rng: np.random.Generator):  # type: ignore[no-untyped-def]
+    """A part as both heads would measure it: holes off their drawing, noise in both images."""
+    part, heads = placement.measurement.parts[index], []
+    across = np.diag([1.0, 1.0, 0.0])
+    for number, stated in enumerate(placement.measurement.heads):
+        camera_T_part = placement.cell_T_cameras[number].inv() * placement.cell_T_parts[index]
+        found = []
+        for hole in part.seen[stated.name]:
+            spread = image_covariance(
+                stated.camera, camera_T_part, hole, placement.qualities[number], placement.frames
+            )
+            off_m = across @ rng.normal(0.0, hole.position_sigma_m, 3)
+            true_m = camera_T_part.apply(hole.position_m + off_m)
+            if number:
+                true_m = moved.apply(true_m)
+            seen = np.concatenate([one[0] for one in pixels(stated.camera, true_m[None])])
+            seen = rng.multivariate_normal(seen, spread)
+            point = triangulate(stated.camera, seen[:2], seen[2:], spread)
+            found.append(_measured(hole, seen, spread, point.position_m, point.covariance_m2))
+        heads.append(PairMeasurement("default", tuple(found), placement.frames))
+    return heads, part
+
+
+def _measured(hole, seen, spread, position_m, covariance_m2):  # type: ignore[no-untyped-def]
+    ellipse = None
+    return HoleMeasurement(
+        hole.name, hole.kind, seen[:2], seen[2:], spread[:2, :2], spread[2:, 2:],
+        position_m, covariance_m2, ellipse, ellipse, hole.diameter_m, 0.0,  # type: ignore[arg-type]
+    )  # fmt: skip
+
+
+def test_drawn_measurements_scatter_as_predicted() -> None:
+    rng = np.random.default_rng(5)
+    still = replace(PLACEMENT, measurement=replace(PLACEMENT.measurement, sway_m=0.0))
+    statement = still.measurement
+    predicted = predicted_pose(still)
+    truth = still.cell_T_parts[0].inv() * still.cell_T_parts[-1]
+    off = []
+    for _ in range(DRAWS):
+        drift = rng.multivariate_normal(np.zeros(6), statement.between_heads)
+        # What c1_T_c2 is off shows in the points of the second head.
+        moved = still.c1_T_c2.inv() * perturbed(still.c1_T_c2, drift)
+        parts = []
+        for index in (0, -1):
+            heads, part = drawn_part(still, index, moved, rng)
+            between = UncertainPose(still.c1_T_c2, statement.between_heads)
+            holes = [hole for seen in part.seen.values() for hole in seen]
+            parts.append(part_pose(heads[0], heads[1], between, holes))
+        found = relative_pose(
+            parts[0].points,
+            parts[1].points,
+            parts[0].pose.pose,
+            parts[1].pose.pose,
+            statement.between_heads,
+        )
+        off.append(np.concatenate(pose_error(truth, found.part_1_T_part_2.pose)))
+    ratio = np.sqrt(np.mean(np.square(off), axis=0)) / predicted.sigma
+    # Of 150 draws a standard deviation is known to 6 %.
+    assert (ratio > 0.8).all(), ratio
+    assert (ratio < 1.25).all(), ratio
+
+
+def test_the_sources_add_up_to_the_whole() -> None:
+    predicted = predicted_pose(PLACEMENT, explain=True)
+    assert set(predicted.by_source) == set(SOURCES)
+    total = sum(predicted.by_source.values())
+    assert total == pytest.approx(np.diag(predicted.covariance), rel=0.01)
+    assert all(
+        (part > -1e-3 * np.diag(predicted.covariance)).all()
+        for part in predicted.by_source.values()
+    )
+
+
+def test_about_x_depends_on_the_images_and_z_on_the_calibration() -> None:
+    predicted = predicted_pose(PLACEMENT, explain=True)
+    assert np.argmax(predicted.shares) == 3
+    assert predicted.by_source["images"][3] > 0.5 * predicted.covariance[3, 3]
+    assert 0.0 < predicted.calibration[2, 2] < predicted.covariance[2, 2]
