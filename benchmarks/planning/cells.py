@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config import load_cell
 from cellctl.config.model_file import model_path
-from cellctl.config.stated_moves import StatedPlace
+from cellctl.config.stated.moves import StatedPlace
 from cellctl.geometry.pose import Array
 from cellctl.planning.model.read import read_model
 from cellctl.planning.model.shapes import BoxShape

@@ -23,7 +23,7 @@ from benchmarks.metrology.loop import Setting
 from benchmarks.planning.measured_decks import MeasuredDeck, measured_deck
 from cellctl.config import load_cell
 from cellctl.config.model_file import model_path
-from cellctl.config.stated_views import StatedMeasurement, StatedPart
+from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.errors.base import CellError
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.units import in_mm_deg

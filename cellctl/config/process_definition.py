@@ -11,11 +11,11 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.roles import Role
-from cellctl.config.stated_moves import StatedMove
+from cellctl.config.stated.moves import StatedMove
 from cellctl.errors.config import UnknownDriver
 
 if TYPE_CHECKING:
-    from cellctl.config.stated_views import StatedMeasurement
+    from cellctl.config.stated.views import StatedMeasurement
 
 
 class NoSettings(Section):

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.config.stated_views import StatedMeasurement, StatedPart
+from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.looks import left_T_middle

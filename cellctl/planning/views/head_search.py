@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated_views import StatedHead, StatedMeasurement
+from cellctl.config.stated.views import StatedHead, StatedMeasurement
 from cellctl.errors.config import HeadNotDescribed
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.cell_scene import CellScene, Standpoint

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from cellctl.config.process_definition import process_definition
-from cellctl.config.stated_views import StatedMeasurement
+from cellctl.config.stated.views import StatedMeasurement
 from cellctl.errors.config import NoViewpoint
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.head_search import HeadSearch, Viewpoint
@@ -106,9 +106,9 @@ class ViewpointPlan:
 
     def search(self) -> PlannedViews:
         """The best pair of places with its runners-up; raises ``NoViewpoint``."""
-        kept = tuple(self._candidates(number) for number in (0, 1))
+        ones, twos = self._candidates(0), self._candidates(1)
         pairs = sorted(
-            (self._rated(pair) for pair in product(*kept) if self._together(pair)),
+            (self._rated(pair) for pair in product(ones, twos) if self._together(pair)),
             key=lambda pair: pair.predicted.worst,
         )
         if not pairs:

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated_views import StatedMeasurement, StatedPart
+from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.geometry.pose import Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.planning.scene.head_limits import ImageQuality

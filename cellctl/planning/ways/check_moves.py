@@ -8,7 +8,7 @@ import numpy as np
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.process_definition import process_definition
-from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.errors.config import (
     BodiesCollide,
     ClearanceTooSmall,

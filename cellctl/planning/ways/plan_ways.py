@@ -7,7 +7,7 @@ import numpy as np
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import WayConfig
-from cellctl.config.stated_moves import MoveKind, StatedMove
+from cellctl.config.stated.moves import MoveKind, StatedMove
 from cellctl.errors.config import NoFreeWay
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.arm import PlannedArm

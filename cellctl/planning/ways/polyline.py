@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.config.via_points import via_points
 from cellctl.errors.config import PlaceUnreachable
 from cellctl.geometry.arm.linear_way import BrokenWay, WaySteps, linear_joint_way

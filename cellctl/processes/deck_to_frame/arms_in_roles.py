@@ -7,7 +7,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.driver_settings import robot_driver
-from cellctl.config.stated_moves import StatedPlace
+from cellctl.config.stated.moves import StatedPlace
 from cellctl.errors.config import ArmNotDescribed
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe

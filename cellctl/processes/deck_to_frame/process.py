@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
-from cellctl.config.stated_moves import StatedMove
+from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import ROLES
@@ -21,7 +21,7 @@ from cellctl.runtime.steps import Steps
 
 if TYPE_CHECKING:
     from cellctl.calibration.store.kind import Kinds
-    from cellctl.config.stated_views import StatedMeasurement
+    from cellctl.config.stated.views import StatedMeasurement
     from cellctl.processes.deck_to_frame.run import OpenRun
     from cellctl.processes.deck_to_frame.run_facts import RunFacts
     from cellctl.processes.deck_to_frame.state import Ready

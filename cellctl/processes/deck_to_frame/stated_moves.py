@@ -6,7 +6,7 @@ Whoever adds a move to the process adds it here: a test compares both.
 from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.config.via_points import has_way
 from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM

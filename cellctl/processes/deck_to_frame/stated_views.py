@@ -8,8 +8,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.pose_record import pose_from_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.stated_moves import StatedPlace
-from cellctl.config.stated_views import StatedHead, StatedMeasurement, StatedPart
+from cellctl.config.stated.moves import StatedPlace
+from cellctl.config.stated.views import StatedHead, StatedMeasurement, StatedPart
 from cellctl.errors.config import HeadNotDescribed
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.arms_in_roles import ArmsInRoles

@@ -10,7 +10,7 @@ from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import HOME
 from cellctl.processes.peg_in_hole.stations import PegCell, peg_recipes, weight_of
 
-_CLEAR_M = 15e-3
+CLEAR_OF_FACE_M = 15e-3
 """Over the face a joint move may begin."""
 _BESIDE_M = 50e-3
 """Farther than this from the axis of a hole nothing stands in the way."""
@@ -40,7 +40,7 @@ async def _out_of(cell: PegCell, recipe: PegRecipe) -> None:
     tip = base_T_hole.inv() * here * pose_from_xyzabc(recipe.flange_T_tip)
     x_m, y_m, height_m = tip.translation.tolist()
     uncertain_m = recipe.base_T_hole.height_uncertainty_mm * MM
-    missing_m = _CLEAR_M + uncertain_m - height_m
+    missing_m = CLEAR_OF_FACE_M + uncertain_m - height_m
     if np.hypot(x_m, y_m) > _BESIDE_M or missing_m <= 0:
         return
     # Along the axis of the hole: in any other direction a tight peg would jam.

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
+from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.peg_in_hole.faults import (
     HoleAbsent,
     HoleBlocked,
@@ -67,6 +68,13 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         from cellctl.processes.peg_in_hole.plausible import plausible_issues
 
         return plausible_issues(cell, cast(PegRecipe, recipe), key)
+
+    @classmethod
+    def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:
+        """Those of a run and of the way back to its beginning; the procedures make the same."""
+        from cellctl.processes.peg_in_hole.stated_moves import peg_moves
+
+        return peg_moves(cell, cast(PegRecipe, recipe))
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

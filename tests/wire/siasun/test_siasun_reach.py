@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config import load_cell
-from cellctl.config.stated_moves import MoveKind
+from cellctl.config.stated.moves import MoveKind
 from cellctl.errors.robot import WayNotReached
 from cellctl.planning.ways.polyline import joints_at
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe

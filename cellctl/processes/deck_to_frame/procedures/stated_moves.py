@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.errors.config import ConfigInvalid
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.procedures.base_frame import AxisTurns, turn_angles

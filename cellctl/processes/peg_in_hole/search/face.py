@@ -29,7 +29,7 @@ _CLEAR_M = 3e-3
 """Over a plug that stands proud of the touched panel."""
 _UPRIGHT = np.zeros(3)
 _DOWN = np.array([0.0, 0.0, 1.0])
-_ANGLES_RAD = np.radians([0.0, 60.0, 120.0, 240.0])
+ANGLES_RAD = np.radians([0.0, 60.0, 120.0, 240.0])
 """In the order of the touches: three for the plane, and one between two of them to prove it."""
 _OF_PLANE, _PROOF = [0, 2, 3], 1
 _STEP_RAD = radians(30)
@@ -77,7 +77,7 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     """
     radius_m, height_uncertainty_m = plan.radius_m, plan.height_uncertainty_m
     touching = _Touching(motions, task, plan.datum_depth_m, height_uncertainty_m)
-    places = radius_m * np.stack([np.cos(_ANGLES_RAD), np.sin(_ANGLES_RAD)], axis=1)
+    places = radius_m * np.stack([np.cos(ANGLES_RAD), np.sin(ANGLES_RAD)], axis=1)
     # The arm may press harder where nothing is known yet; vision's height may be wrong by much.
     fast_m_s = touch_speed_m_s(
         task.cell.stiffness_n_m, task.cell.dead_time_s, task.limits.insertion_n / 2
@@ -87,7 +87,7 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     await touching.over_first(places[0], plan.datum_depth_m - above_m)
     touches = [await touching.at(places[0], reach_m, speed_m_s=fast_m_s)]
     first_m = _depth_m(touches[0])
-    for angle_rad, place in zip(_ANGLES_RAD[1:], places[1:], strict=True):
+    for angle_rad, place in zip(ANGLES_RAD[1:], places[1:], strict=True):
         # A face that is tilted by as much as is allowed is still met from above.
         apart_m = float(np.linalg.norm(place - places[0]))
         above_m = _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))

@@ -45,7 +45,7 @@ def test_a_cell_whose_processes_state_no_moves_is_not_free(tmp_path: Path) -> No
     model = tmp_path / "pin.model.toml"
     model.write_text(text[: text.index("[robots.aux_1]")].replace("robots.main", "robots.arm"))
     with pytest.raises(NoMovesStated):
-        run("check", "config/insertion-pin.toml", "--model", str(model))
+        run("check", "config/antenna.toml", "--model", str(model))
 
 
 @pytest.mark.long

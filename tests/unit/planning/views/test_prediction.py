@@ -6,12 +6,15 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.geometry.pose import pose_error
+from cellctl.geometry.pose import Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose, perturbed
 from cellctl.planning.views.hole_image import image_covariance, pixels
 from cellctl.planning.views.plan_viewpoints import taught_placement
 from cellctl.planning.views.prediction import SOURCES, Placement, predicted_pose
+from cellctl.vision.camera.ellipse import Ellipse
+from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import triangulate
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
 from cellctl.vision.registration.part_pose import part_pose
 from cellctl.vision.registration.relative_pose import relative_pose
@@ -21,35 +24,45 @@ PLACEMENT = taught_placement(SCENE, measurement())
 DRAWS = 150
 
 
-def drawn_part(placement: Placement, index: int, moved: RigidTransform, rng: np.random.Generator):  # type: ignore[no-untyped-def]
+def drawn_part(
+    placement: Placement, index: int, moved: RigidTransform, rng: np.random.Generator
+) -> tuple[PairMeasurement, PairMeasurement]:
     """A part as both heads would measure it: holes off their drawing, noise in both images."""
     part, heads = placement.measurement.parts[index], []
-    across = np.diag([1.0, 1.0, 0.0])
     for number, stated in enumerate(placement.measurement.heads):
         camera_T_part = placement.cell_T_cameras[number].inv() * placement.cell_T_parts[index]
-        found = []
+        quality, found = placement.qualities[number], []
         for hole in part.seen[stated.name]:
-            spread = image_covariance(
-                stated.camera, camera_T_part, hole, placement.qualities[number], placement.frames
-            )
-            off_m = across @ rng.normal(0.0, hole.position_sigma_m, 3)
+            spread = image_covariance(stated.camera, camera_T_part, hole, quality, placement.frames)
+            off_m = rng.normal(0.0, hole.position_sigma_m, 3) * [1.0, 1.0, 0.0]
             true_m = camera_T_part.apply(hole.position_m + off_m)
             if number:
                 true_m = moved.apply(true_m)
             seen = np.concatenate([one[0] for one in pixels(stated.camera, true_m[None])])
-            seen = rng.multivariate_normal(seen, spread)
-            point = triangulate(stated.camera, seen[:2], seen[2:], spread)
-            found.append(_measured(hole, seen, spread, point.position_m, point.covariance_m2))
+            found.append(
+                measured(stated.camera, hole, rng.multivariate_normal(seen, spread), spread)
+            )
         heads.append(PairMeasurement("default", tuple(found), placement.frames))
-    return heads, part
+    return heads[0], heads[1]
 
 
-def _measured(hole, seen, spread, position_m, covariance_m2):  # type: ignore[no-untyped-def]
-    ellipse = None
+def measured(head: StereoHead, hole: Hole, seen_px: Array, spread_px2: Array) -> HoleMeasurement:
+    point = triangulate(head, seen_px[:2], seen_px[2:], spread_px2)
+    rim = Ellipse(seen_px[:2], (20.0, 20.0), 0.0)
     return HoleMeasurement(
-        hole.name, hole.kind, seen[:2], seen[2:], spread[:2, :2], spread[2:, 2:],
-        position_m, covariance_m2, ellipse, ellipse, hole.diameter_m, 0.0,  # type: ignore[arg-type]
-    )  # fmt: skip
+        name=hole.name,
+        kind=hole.kind,
+        left_px=seen_px[:2],
+        right_px=seen_px[2:],
+        left_covariance_px2=spread_px2[:2, :2],
+        right_covariance_px2=spread_px2[2:, 2:],
+        position_m=point.position_m,
+        covariance_m2=point.covariance_m2,
+        left_ellipse=rim,
+        right_ellipse=rim,
+        diameter_m=hole.diameter_m,
+        epipolar_px=0.0,
+    )
 
 
 def test_drawn_measurements_scatter_as_predicted() -> None:
@@ -65,9 +78,9 @@ def test_drawn_measurements_scatter_as_predicted() -> None:
         moved = still.c1_T_c2.inv() * perturbed(still.c1_T_c2, drift)
         parts = []
         for index in (0, -1):
-            heads, part = drawn_part(still, index, moved, rng)
+            heads = drawn_part(still, index, moved, rng)
             between = UncertainPose(still.c1_T_c2, statement.between_heads)
-            holes = [hole for seen in part.seen.values() for hole in seen]
+            holes = [hole for seen in statement.parts[index].seen.values() for hole in seen]
             parts.append(part_pose(heads[0], heads[1], between, holes))
         found = relative_pose(
             parts[0].points,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.errors.config import BodiesCollide, ClearanceTooSmall, PlaceUnreachable
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways.check_moves import check_move, stated_moves

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated_moves import MoveKind, StatedMove, StatedPlace
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.planning.ways.check_moves import stated_moves
 from tests.unit.planning.deck_cell import deck_scene

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated_moves import StatedPlace
+from cellctl.config.stated.moves import StatedPlace
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.features.hole import Hole

@@ -1,0 +1,53 @@
+"""The moves of a pin against the model of its cell, and against where its run sends the arm."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cellctl.config import load_cell
+from cellctl.config.model_file import model_path
+from cellctl.config.stated.moves import MoveKind, StatedMove
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.planning.model.read import read_model
+from cellctl.planning.ways.check_moves import check_move, stated_moves
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+
+PIN = Path("config/insertion-pin.toml")
+SCENE = read_model(load_cell(PIN), model_path(PIN))
+MOVES = list(stated_moves(SCENE.cell))
+(RECIPE,) = SCENE.cell.recipes
+assert isinstance(RECIPE, PegRecipe)
+
+
+@pytest.mark.parametrize("move", MOVES, ids=lambda move: move.name)
+def test_every_move_of_the_shipped_cell_is_free(move: StatedMove) -> None:
+    checked = check_move(SCENE, move)
+    assert checked.fault is None, str(checked.fault)
+
+
+def tip_mm(place: str) -> np.ndarray:
+    """The tip in the frame of the hole at the place of this label, in mm."""
+    found = next(end for move in MOVES for end in (move.start, move.end) if end.label == place)
+    flange = found.base_T_flange
+    if flange is None:
+        flange = SCENE.arms["arm"].base_T_flange(found.joints_rad)
+    hole, held = pose_from_xyzabc(RECIPE.base_T_hole.pose), pose_from_xyzabc(RECIPE.flange_T_tip)
+    return np.asarray((hole.inv() * flange * held).translation) / MM
+
+
+def test_the_tip_comes_to_the_seat_and_to_the_circle_of_the_touches() -> None:
+    assert tip_mm("seat") == pytest.approx([0.0, 0.0, -12.0 - 1.5], abs=1e-6)
+    for number in (1, 2, 3, 4):
+        x_mm, y_mm, z_mm = tip_mm(f"touch {number}")
+        assert np.hypot(x_mm, y_mm) == pytest.approx(8.0)
+        assert z_mm == pytest.approx(-1.5)
+
+
+def test_the_arm_leaves_the_hole_along_its_axis_before_it_goes_home() -> None:
+    (out,) = [move for move in MOVES if move.start.label == "seat"]
+    assert out.kind is MoveKind.LINEAR
+    assert out.approach
+    assert tip_mm(out.end.label) == pytest.approx([0.0, 0.0, 15.0 + 1.5], abs=1e-6)
+    (back,) = [move for move in MOVES if move.start.label == out.end.label]
+    assert (back.kind, back.end.label, back.approach) == (MoveKind.JOINT, "home", False)
