@@ -1,6 +1,7 @@
 """The moves of a pin against the model of its cell, and against where its run sends the arm."""
 
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -16,8 +17,7 @@ from cellctl.processes.peg_in_hole.recipe import PegRecipe
 PIN = Path("config/insertion-pin.toml")
 SCENE = read_model(load_cell(PIN), model_path(PIN))
 MOVES = list(stated_moves(SCENE.cell))
-(RECIPE,) = SCENE.cell.recipes
-assert isinstance(RECIPE, PegRecipe)
+RECIPE = cast(PegRecipe, SCENE.cell.recipes[0])
 
 
 @pytest.mark.parametrize("move", MOVES, ids=lambda move: move.name)
