@@ -13,7 +13,7 @@ from cellctl.geometry.pose import Array
 from cellctl.planning.scene.cell_scene import CellScene, Standpoint
 from cellctl.planning.scene.head_limits import HeadLimits
 from cellctl.planning.scene.surroundings import Surroundings
-from cellctl.planning.views.looks import Look, aim_at, left_T_middle, look_of
+from cellctl.planning.views.looks import HeadLook, aim_at, left_T_middle, look_of
 from cellctl.planning.views.prediction import part_in_cell
 from cellctl.planning.views.seeing import SeenHoles, why_unseen
 from cellctl.planning.views.sight import Sights
@@ -25,7 +25,7 @@ from cellctl.planning.ways.polyline import joints_at
 class Viewpoint:
     """A head where it sees everything that it is to see."""
 
-    look: Look
+    look: HeadLook
     joints_rad: Array
     """Of its arm, shape (6,)."""
     cell_T_camera: RigidTransform
@@ -84,11 +84,11 @@ class HeadSearch:
         look = look_of(camera * left_T_middle(self.head.camera), self.aim)
         return Viewpoint(look, joints_rad, camera)
 
-    def camera_at(self, look: Look) -> RigidTransform:
+    def camera_at(self, look: HeadLook) -> RigidTransform:
         """``cell_T_camera`` of the left camera."""
         return look.cell_T_middle(self.aim) * left_T_middle(self.head.camera).inv()
 
-    def seeing(self, looks: Iterable[Look]) -> Iterator[Look]:
+    def seeing(self, looks: Iterable[HeadLook]) -> Iterator[HeadLook]:
         """Those from which all holes are well in both images; nothing else is looked at."""
         for look in looks:
             why = self._why_unseen(self.camera_at(look))
@@ -97,7 +97,7 @@ class HeadSearch:
             else:
                 self.refused[why] += 1
 
-    def viewpoint(self, look: Look) -> Viewpoint | None:
+    def viewpoint(self, look: HeadLook) -> Viewpoint | None:
         """The head there, if everything allows it apart from the other head."""
         camera = self.camera_at(look)
         why = self._why_unseen(camera)

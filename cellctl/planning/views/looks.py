@@ -16,7 +16,7 @@ _ROLLS = 12
 
 
 @dataclass(frozen=True, slots=True)
-class Look:
+class HeadLook:
     """Where the middle of a head is, seen from what it looks at."""
 
     distance_m: float
@@ -37,7 +37,7 @@ class Look:
         back = RigidTransform.from_translation([0.0, 0.0, -self.distance_m])
         return cell_T_aim * shift * RigidTransform.from_rotation(turn) * back
 
-    def neighbours(self, step: float) -> Iterator["Look"]:
+    def neighbours(self, step: float) -> Iterator["HeadLook"]:
         """One number changed at a time; ``step`` 1 is that of the grid, about."""
         sizes = {
             "distance_m": 0.04,
@@ -52,7 +52,7 @@ class Look:
                 yield replace(self, **{name: getattr(self, name) + sign * size * step})
 
 
-def grid_of_looks(nearest_m: float, farthest_m: float) -> Iterator[Look]:
+def grid_of_looks(nearest_m: float, farthest_m: float) -> Iterator[HeadLook]:
     """Evenly over the distances that are in focus, tilts in all directions, and rolls."""
     reach_m = farthest_m - nearest_m
     # Not at the ends: the holes of a head are not all at one distance.
@@ -61,11 +61,11 @@ def grid_of_looks(nearest_m: float, farthest_m: float) -> Iterator[Look]:
     ):
         for tilt_x, tilt_y in _tilts():
             for roll in 2.0 * np.pi * np.arange(_ROLLS) / _ROLLS:
-                yield Look(float(distance_m), tilt_x, tilt_y, float(roll))
+                yield HeadLook(float(distance_m), tilt_x, tilt_y, float(roll))
 
 
-def look_of(cell_T_middle: RigidTransform, cell_T_aim: RigidTransform) -> Look:
-    """The look from a place, the inverse of ``Look.cell_T_middle``.
+def look_of(cell_T_middle: RigidTransform, cell_T_aim: RigidTransform) -> HeadLook:
+    """The look from a place, the inverse of ``HeadLook.cell_T_middle``.
 
     The line of sight must not be parallel to the parts.
     """
@@ -79,7 +79,7 @@ def look_of(cell_T_middle: RigidTransform, cell_T_aim: RigidTransform) -> Look:
         tilt *= np.arctan2(size, forward[2]) / size
     rest = Rotation.from_rotvec(tilt).inv() * seen.rotation
     roll = float(np.arctan2(rest.as_matrix()[1, 0], rest.as_matrix()[0, 0]))
-    return Look(
+    return HeadLook(
         distance_m, float(tilt[0]), float(tilt[1]), roll, float(aimed_m[0]), float(aimed_m[1])
     )
 

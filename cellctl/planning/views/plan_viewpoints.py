@@ -13,9 +13,9 @@ from cellctl.config.stated.views import StatedMeasurement
 from cellctl.errors.config import NoViewpoint
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.head_search import HeadSearch, Viewpoint
-from cellctl.planning.views.looks import Look, grid_of_looks
+from cellctl.planning.views.looks import HeadLook, grid_of_looks
 from cellctl.planning.views.prediction import (
-    Placement,
+    HeadPlacement,
     PredictedPose,
     part_in_cell,
     predicted_pose,
@@ -49,7 +49,7 @@ class PlannedPair:
 class PlannedViews:
     """What was found for one measurement."""
 
-    placement: Placement
+    placement: HeadPlacement
     """With the best pair."""
     best: PlannedPair
     runners_up: tuple[PlannedPair, ...]
@@ -65,14 +65,14 @@ def stated_measurements(scene: CellScene, folder: Path) -> Iterator[StatedMeasur
         yield from process_definition(recipe.process).measurements(scene.cell, recipe, folder)
 
 
-def taught_placement(scene: CellScene, measurement: StatedMeasurement) -> Placement:
+def taught_placement(scene: CellScene, measurement: StatedMeasurement) -> HeadPlacement:
     """Both heads where the cell file has them.
 
     Raises ``HeadNotDescribed`` or ``PlaceUnreachable``.
     """
     one, two = (HeadSearch.of(scene, measurement, number) for number in (0, 1))
     bases = {name: arm.cell_T_base for name, arm in scene.arms.items()}
-    return Placement(
+    return HeadPlacement(
         measurement,
         tuple(part_in_cell(part, bases) for part in measurement.parts),
         (one.taught().cell_T_camera, two.taught().cell_T_camera),
@@ -88,7 +88,7 @@ class ViewpointPlan:
         self,
         scene: CellScene,
         measurement: StatedMeasurement,
-        grid: Sequence[Look] | None = None,
+        grid: Sequence[HeadLook] | None = None,
     ) -> None:
         """``grid``: from where to look beside the taught pose; None for all directions.
 
@@ -146,12 +146,12 @@ class ViewpointPlan:
             raise NoViewpoint(f"{search.head.name}: {reasons}")
         return kept
 
-    def _predicted_with(self, number: int, look: Look) -> PredictedPose:
+    def _predicted_with(self, number: int, look: HeadLook) -> PredictedPose:
         cameras = list(self._placement.cell_T_cameras)
         cameras[number] = self._heads[number].camera_at(look)
         return predicted_pose(replace(self._placement, cell_T_cameras=(cameras[0], cameras[1])))
 
-    def _placed(self, pair: Pair) -> Placement:
+    def _placed(self, pair: Pair) -> HeadPlacement:
         cameras = pair[0].cell_T_camera, pair[1].cell_T_camera
         return replace(self._placement, cell_T_cameras=cameras)
 

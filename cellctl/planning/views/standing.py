@@ -21,7 +21,7 @@ _LEVER_M = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Standing:
+class HeldHead:
     """Joints at which an arm may stand, or why there are none."""
 
     joints_rad: Array | None
@@ -30,26 +30,26 @@ class Standing:
 
 def standing_at(
     arm: PlannedArm, around: Surroundings, cell_T_flange: RigidTransform, near_rad: Array
-) -> Standing:
+) -> HeldHead:
     """The arm with its flange at a pose, folded as at ``near_rad``, shape (6,)."""
     base_T_flange = (arm.cell_T_base.inv() * cell_T_flange).as_matrix()
     joints_rad = joints_reaching(arm.chain, base_T_flange, _turned(arm, base_T_flange, near_rad))
     if joints_rad is None:
-        return Standing(None, OUT_OF_REACH)
+        return HeldHead(None, OUT_OF_REACH)
     joints_rad = _unwound(arm, joints_rad)
     if _least_singular(arm, joints_rad) < _LEAST_SINGULAR:
-        return Standing(None, SINGULAR)
+        return HeldHead(None, SINGULAR)
     margin_rad = arm.joint_margin_rad
     if around.refusal(joints_rad) is not None or any(
         arm.refusal(joints_rad + sign * margin_rad * axis) is not None
         for axis in np.eye(6)
         for sign in (1.0, -1.0)
     ):
-        return Standing(None, NEAR_A_LIMIT)
+        return HeldHead(None, NEAR_A_LIMIT)
     if not around.has_room(joints_rad, 0.0):
         gap = around.narrowest(joints_rad)
-        return Standing(None, f"{gap.first} is too near to {gap.second}")
-    return Standing(joints_rad, None)
+        return HeldHead(None, f"{gap.first} is too near to {gap.second}")
+    return HeldHead(joints_rad, None)
 
 
 def _turned(arm: PlannedArm, base_T_flange: Array, near_rad: Array) -> Array:

@@ -72,7 +72,7 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
     @classmethod
     def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:
         """Those of a run and of the way back to its beginning; the procedures make the same."""
-        from cellctl.processes.peg_in_hole.stated_moves import peg_moves
+        from cellctl.processes.peg_in_hole.plan.stated_moves import peg_moves
 
         return peg_moves(cell, cast(PegRecipe, recipe))
 

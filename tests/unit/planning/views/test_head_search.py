@@ -12,7 +12,7 @@ from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.views import seeing, standing
 from cellctl.planning.views.head_search import HeadSearch
-from cellctl.planning.views.looks import Look
+from cellctl.planning.views.looks import HeadLook
 from tests.unit.planning.views.deck_views import SCENE, measurement, with_limits
 
 
@@ -20,7 +20,7 @@ def search(scene: CellScene = SCENE, number: int = 0) -> HeadSearch:
     return HeadSearch.of(scene, measurement(), number)
 
 
-def refusal(scene: CellScene, look: Look | None = None) -> str:
+def refusal(scene: CellScene, look: HeadLook | None = None) -> str:
     found = search(scene)
     assert found.viewpoint(look or found.taught().look) is None
     ((why, count),) = found.refused.items()

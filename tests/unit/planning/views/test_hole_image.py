@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from benchmarks.metrology.figures import crlb_px
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.head_limits import ImageQuality
 from cellctl.planning.views.hole_image import KINDS, image_covariance
@@ -28,7 +27,10 @@ def covariance(hole: Hole = DISC, *, distance_m: float = 0.5, frames: int = 1) -
 
 def test_a_disc_that_faces_the_camera_has_the_known_bound() -> None:
     focal_px = float(HEAD.left.camera_matrix[0, 0])
-    bound_px = crlb_px(focal_px * 3e-3 / 0.5, 90.0, 3.0, 0.9)
+    # The bound of docs/metrology.md for a circle, with a pixel's own box and 8 bits.
+    edge_px, noise_grey = np.sqrt(0.9**2 + 1.0 / 12.0), np.sqrt(3.0**2 + 1.0 / 12.0)
+    radius_px = focal_px * 3e-3 / 0.5
+    bound_px = noise_grey / 90.0 * np.sqrt(2.0 * edge_px / (np.sqrt(np.pi) * radius_px))
     sigma_px = np.sqrt(np.diag(covariance()))[:2]
     assert sigma_px == pytest.approx(np.full(2, KINDS["disc"].over_bound * bound_px), rel=0.02)
 

@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.planning.views.gains import with_baseline
-from cellctl.planning.views.looks import Look, grid_of_looks, left_T_middle, look_of
+from cellctl.planning.views.looks import HeadLook, grid_of_looks, left_T_middle, look_of
 from tests.unit.planning.views.deck_views import measurement
 
 AIM = RigidTransform.from_components(
@@ -14,8 +14,8 @@ HEAD = measurement().heads[0].camera
 small = st.floats(-0.6, 0.6)
 
 
-@given(st.builds(Look, st.floats(0.2, 2.0), small, small, st.floats(-3.1, 3.1), small, small))
-def test_a_place_gives_its_look_back(look: Look) -> None:
+@given(st.builds(HeadLook, st.floats(0.2, 2.0), small, small, st.floats(-3.1, 3.1), small, small))
+def test_a_place_gives_its_look_back(look: HeadLook) -> None:
     again = look_of(look.cell_T_middle(AIM), AIM)
     between = look.cell_T_middle(AIM).inv() * again.cell_T_middle(AIM)
     assert np.allclose(between.as_matrix(), np.eye(4), atol=1e-9)

@@ -7,7 +7,7 @@ import pytest
 from cellctl.config import load_cell
 from cellctl.errors.config import NoViewpoint
 from cellctl.planning.views.gains import gains
-from cellctl.planning.views.looks import Look
+from cellctl.planning.views.looks import HeadLook
 from cellctl.planning.views.plan_viewpoints import PlannedViews, ViewpointPlan
 from cellctl.planning.views.view_text import gain_line, views_lines
 from cellctl.planning.views.write_viewpoints import with_viewpoints_written
@@ -15,7 +15,7 @@ from tests.unit.planning.deck_cell import DECK
 from tests.unit.planning.views.deck_views import SCENE, measurement, with_limits
 
 TILTED = [
-    Look(0.48, sign * 0.25, sign * 0.25, roll) for sign in (1.0, -1.0) for roll in (0.0, np.pi)
+    HeadLook(0.48, sign * 0.25, sign * 0.25, roll) for sign in (1.0, -1.0) for roll in (0.0, np.pi)
 ]
 """Looks that are better than the taught ones, of which a whole search finds more."""
 
