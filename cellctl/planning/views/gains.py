@@ -10,7 +10,7 @@ from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.looks import left_T_middle
-from cellctl.planning.views.prediction import HeadPlacement, PredictedPose, predicted_pose
+from cellctl.planning.views.prediction import PredictedPose, ViewGeometry, predicted_pose
 from cellctl.planning.views.seeing import SeenHoles, why_unseen
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.features.hole import Hole
@@ -27,7 +27,7 @@ class Gain:
     predicted: PredictedPose
 
 
-def gains(scene: CellScene, placement: HeadPlacement) -> Iterator[Gain]:
+def gains(scene: CellScene, placement: ViewGeometry) -> Iterator[Gain]:
     """With both heads where they are planned."""
     statement = placement.measurement
     most = replace(placement, frames=statement.max_frames)
@@ -42,7 +42,7 @@ def gains(scene: CellScene, placement: HeadPlacement) -> Iterator[Gain]:
     yield from _further(scene, placement)
 
 
-def _longer(placement: HeadPlacement) -> HeadPlacement:
+def _longer(placement: ViewGeometry) -> ViewGeometry:
     """The middle of each head stays, and both lines of sight meet where they met."""
     heads, cameras = [], []
     for stated, cell_T_left in zip(
@@ -84,7 +84,7 @@ def _toe_in_rad(head: StereoHead) -> float:
     return float(np.arccos(np.clip(forward[2], -1.0, 1.0)))
 
 
-def _widest(scene: CellScene, placement: HeadPlacement) -> Gain | None:
+def _widest(scene: CellScene, placement: ViewGeometry) -> Gain | None:
     """Holes of the same kinds, as far apart as the pictures hold."""
     found: Gain | None = None
     for ratio in _WIDER:
@@ -113,7 +113,7 @@ def _with_holes(statement: StatedMeasurement, ratio: float) -> StatedMeasurement
     return replace(statement, parts=parts)
 
 
-def _further(scene: CellScene, placement: HeadPlacement) -> Iterator[Gain]:
+def _further(scene: CellScene, placement: ViewGeometry) -> Iterator[Gain]:
     """Each hole of the drawing that no head measures so far, where a head sees it in all parts."""
     statement = placement.measurement
     for name in dict.fromkeys(hole.name for hole in statement.parts[0].further):
@@ -130,7 +130,7 @@ def _with_further(part: StatedPart, head: str, name: str) -> StatedPart:
     return replace(part, seen={**part.seen, head: part.seen[head] + more})
 
 
-def _all_seen(scene: CellScene, placement: HeadPlacement) -> bool:
+def _all_seen(scene: CellScene, placement: ViewGeometry) -> bool:
     statement = placement.measurement
     return all(
         why_unseen(

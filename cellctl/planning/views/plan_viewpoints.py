@@ -15,8 +15,8 @@ from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.head_search import HeadSearch, Viewpoint
 from cellctl.planning.views.looks import HeadLook, grid_of_looks
 from cellctl.planning.views.prediction import (
-    HeadPlacement,
     PredictedPose,
+    ViewGeometry,
     part_in_cell,
     predicted_pose,
 )
@@ -49,7 +49,7 @@ class PlannedPair:
 class PlannedViews:
     """What was found for one measurement."""
 
-    placement: HeadPlacement
+    placement: ViewGeometry
     """With the best pair."""
     best: PlannedPair
     runners_up: tuple[PlannedPair, ...]
@@ -65,14 +65,14 @@ def stated_measurements(scene: CellScene, folder: Path) -> Iterator[StatedMeasur
         yield from process_definition(recipe.process).measurements(scene.cell, recipe, folder)
 
 
-def taught_placement(scene: CellScene, measurement: StatedMeasurement) -> HeadPlacement:
+def taught_placement(scene: CellScene, measurement: StatedMeasurement) -> ViewGeometry:
     """Both heads where the cell file has them.
 
     Raises ``HeadNotDescribed`` or ``PlaceUnreachable``.
     """
     one, two = (HeadSearch.of(scene, measurement, number) for number in (0, 1))
     bases = {name: arm.cell_T_base for name, arm in scene.arms.items()}
-    return HeadPlacement(
+    return ViewGeometry(
         measurement,
         tuple(part_in_cell(part, bases) for part in measurement.parts),
         (one.taught().cell_T_camera, two.taught().cell_T_camera),
@@ -151,7 +151,7 @@ class ViewpointPlan:
         cameras[number] = self._heads[number].camera_at(look)
         return predicted_pose(replace(self._placement, cell_T_cameras=(cameras[0], cameras[1])))
 
-    def _placed(self, pair: Pair) -> HeadPlacement:
+    def _placed(self, pair: Pair) -> ViewGeometry:
         cameras = pair[0].cell_T_camera, pair[1].cell_T_camera
         return replace(self._placement, cell_T_cameras=cameras)
 

@@ -28,7 +28,7 @@ _MORE = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class HeadPlacement:
+class ViewGeometry:
     """Where both heads and the parts are, and what the images are like."""
 
     measurement: StatedMeasurement
@@ -75,7 +75,7 @@ class PredictedPose:
         return float(self.shares.max())
 
 
-def predicted_pose(placement: HeadPlacement, *, explain: bool = False) -> PredictedPose:
+def predicted_pose(placement: ViewGeometry, *, explain: bool = False) -> PredictedPose:
     """The pose of the last part in the first one, in the axes of the first.
 
     ``explain`` adds the calibrations of the heads and the share of each source, which takes a
@@ -117,7 +117,7 @@ def hole_points(
 
 
 def _points(
-    placement: HeadPlacement,
+    placement: ViewGeometry,
     index: int,
     heads: Sequence[StereoHead] | None = None,
     *,
@@ -179,7 +179,7 @@ def _seen_through(
 
 
 def _solved(
-    placement: HeadPlacement,
+    placement: ViewGeometry,
     first: MeasuredPoints,
     last: MeasuredPoints,
     between: Array,
@@ -191,7 +191,7 @@ def _solved(
     return found.part_1_T_part_2
 
 
-def _by_source(placement: HeadPlacement, covariance: Array) -> Mapping[str, Array]:
+def _by_source(placement: ViewGeometry, covariance: Array) -> Mapping[str, Array]:
     """Each source of error is made a little greater, and the variances tell its part.
 
     Without sway the weights are the best there are, so that to first order they do not matter, and
@@ -215,7 +215,7 @@ def _by_source(placement: HeadPlacement, covariance: Array) -> Mapping[str, Arra
     return parts
 
 
-def _by_calibration(placement: HeadPlacement, first: MeasuredPoints, last: MeasuredPoints) -> Array:
+def _by_calibration(placement: ViewGeometry, first: MeasuredPoints, last: MeasuredPoints) -> Array:
     """What the stated covariance of each head's calibration makes of the pose, shape (6, 6)."""
     statement = placement.measurement
     exact = _solved(placement, first, last, statement.between_heads, 0.0).pose

@@ -10,7 +10,7 @@ from cellctl.geometry.pose import Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose, perturbed
 from cellctl.planning.views.hole_image import image_covariance, pixels
 from cellctl.planning.views.plan_viewpoints import taught_placement
-from cellctl.planning.views.prediction import SOURCES, HeadPlacement, predicted_pose
+from cellctl.planning.views.prediction import SOURCES, ViewGeometry, predicted_pose
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import triangulate
@@ -25,7 +25,7 @@ DRAWS = 150
 
 
 def drawn_part(
-    placement: HeadPlacement, index: int, moved: RigidTransform, rng: np.random.Generator
+    placement: ViewGeometry, index: int, moved: RigidTransform, rng: np.random.Generator
 ) -> tuple[PairMeasurement, PairMeasurement]:
     """A part as both heads would measure it: holes off their drawing, noise in both images."""
     part, heads = placement.measurement.parts[index], []
