@@ -1,4 +1,7 @@
-"""8xx: run store and artefacts."""
+"""8xx: run store and artefacts; 83x: the database with the records of many cells.
+
+None of 83x reaches a running cell.
+"""
 
 from cellctl.errors.base import CellError, Reaction
 
@@ -26,6 +29,19 @@ class StoreTooNew(StoreUnavailable):
     text = "Run store was written by a later version of cellctl"
     cause = "cellctl was replaced by an earlier version after the store had been migrated."
     remedy = "Install the later version again, or go on in another data_dir."
+
+
+class StoreHeldByEarlierVersion(StoreUnavailable):
+    """A daemon of an earlier version works with the store, so that it is not migrated."""
+
+    number = 815
+    text = "Run store is in use by a daemon of an earlier version"
+    cause = "A command or a second daemon of a later version was started beside a running daemon."
+    remedy = (
+        "Use the commands of the version that runs. To upgrade, stop the daemon when no run is "
+        "open."
+    )
+    reaction = Reaction.STOP
 
 
 class StoreInUse(RecordsError):
@@ -193,3 +209,86 @@ class ExportFolderTaken(RecordsError):
     cause = "The same --out was given for two runs; files of both would lie under one report."
     remedy = "Give a folder of its own, or none: `cellctl runs export RUN` makes run-RUN."
     reaction = Reaction.WARN
+
+
+class FleetError(RecordsError):
+    """The fleet database could not be used."""
+
+    reaction = Reaction.WARN
+
+
+class FleetUnreachable(FleetError):
+    """The fleet database does not answer, or not in time."""
+
+    number = 831
+    text = "Fleet database does not answer"
+    cause = "Its server or the network is down, overloaded, or out of disk space."
+    remedy = (
+        "Nothing is lost: the cell keeps its records and delivers them later. See the detail for "
+        "what the server said; `cellctl fleet cells` tries it."
+    )
+
+
+class FleetRefused(FleetError):
+    """The fleet database knows this user or this cell not, or grants too little."""
+
+    number = 832
+    text = "Fleet database refuses access"
+    cause = "The cell was never added, the user is another one, or a right is missing."
+    remedy = "The database's administrator adds the cell or its user: `cellctl fleet add`."
+
+
+class FleetDiffers(FleetError):
+    """The fleet database holds other records under the name of this cell."""
+
+    number = 833
+    text = "Fleet database holds other records of this cell"
+    cause = (
+        "The run store was replaced or restored from a backup, two cells have one name, or "
+        "somebody has changed records here or there."
+    )
+    remedy = (
+        "Nothing more is delivered. Compare `cellctl runs verify` with `cellctl fleet verify`; a "
+        "store that begins anew needs a new name in the cell file and `cellctl fleet add`."
+    )
+
+
+class FleetOutdated(FleetError):
+    """The tables of the fleet database are older than the records of this cell."""
+
+    number = 834
+    text = "Fleet database has tables of an earlier version"
+    cause = "The cell was upgraded before the fleet database."
+    remedy = "Its administrator runs `cellctl fleet migrate` of the new version; delivery goes on."
+
+
+class FleetNotInstalled(FleetError):
+    """The library that speaks with PostgreSQL is missing."""
+
+    number = 835
+    text = "The library for PostgreSQL is not installed"
+    cause = "cellctl was installed without its extra for fleets."
+    remedy = "Install it: pip install 'cellctl[fleet]'."
+
+
+class RecordUndeliverable(FleetError):
+    """A record holds what PostgreSQL cannot keep."""
+
+    number = 836
+    text = "A record cannot be kept by the fleet database"
+    cause = "A text of it holds a character that PostgreSQL refuses, such as a zero byte."
+    remedy = "Report it with the detail: delivery stays at this record, the cell goes on."
+
+
+class FleetNotNamed(FleetError):
+    """Nobody said which database, or not in a form that is accepted."""
+
+    number = 837
+    text = "No usable address of a fleet database"
+    cause = (
+        "The cell file has no [fleet], --store is missing or wrong, or no file has the password."
+    )
+    remedy = (
+        "Give postgresql://USER@HOST:PORT/DATABASE as url under [fleet] or as --store, and the "
+        "password in a file or in CELLCTL_FLEET_PASSWORD."
+    )

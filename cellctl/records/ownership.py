@@ -1,10 +1,12 @@
 """A lock by which one daemon owns a store; it ends with the daemon's process."""
 
 import fcntl
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from cellctl.errors.records import StoreInUse
+from cellctl.errors.records import StoreHeldByEarlierVersion, StoreInUse
 
 
 class Ownership:
@@ -27,6 +29,21 @@ class Ownership:
             file.close()
             raise StoreInUse(str(self._path.parent)) from error
         self._file = file
+
+    @contextmanager
+    def alone(self) -> Iterator[None]:
+        """No daemon works with the store inside the block; raises ``StoreHeldByEarlierVersion``.
+
+        For a migration: one that lives through it would go on writing the form that it knows.
+        """
+        try:
+            self.take()
+        except StoreInUse as error:
+            raise StoreHeldByEarlierVersion(error.detail) from error
+        try:
+            yield
+        finally:
+            self.release()
 
     def release(self) -> None:
         """Give the store up. Idempotent."""

@@ -29,8 +29,12 @@ class RunFilter:
     until: datetime | None = None
     """Started before."""
 
-    def sql(self) -> tuple[str, dict[str, object]]:
-        """A condition on the rows of the table ``runs``, and the values that it names."""
+    def sql(self, each_of_json: str = "json_each") -> tuple[str, dict[str, object]]:
+        """A condition on the rows of the table ``runs``, and the values that it names.
+
+        ``each_of_json`` is the database's function that makes rows of a JSON object: that of
+        SQLite, or ``json_each_text`` of PostgreSQL.
+        """
         asked = {
             "number < :before": ("before", self.before),
             "serial = :serial": ("serial", self.serial),
@@ -41,8 +45,8 @@ class RunFilter:
             f"coalesce(result, '{OPEN}') = :result": ("result", self.result),
             "(fault_number = :fault OR EXISTS (SELECT 1 FROM alarms"
             " WHERE alarms.run = runs.number AND alarms.number = :fault))": ("fault", self.fault),
-            "EXISTS (SELECT 1 FROM json_each(runs.calibration_ids)"
-            " WHERE json_each.value = :calibration)": ("calibration", self.calibration),
+            f"EXISTS (SELECT 1 FROM {each_of_json}(runs.calibration_ids) AS used"
+            " WHERE used.value = :calibration)": ("calibration", self.calibration),
             "started >= :since": ("since", _as_kept(self.since)),
             "started < :until": ("until", _as_kept(self.until)),
         }

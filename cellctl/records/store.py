@@ -43,13 +43,14 @@ class RunStore:
     def __init__(self, path: Path, *, create: bool = True) -> None:
         """Open the store in a folder, migrate an older one, or create it.
 
-        Raises ``StoreUnavailable``, ``StoreTooNew``.
+        Raises ``StoreUnavailable``, ``StoreTooNew``; ``StoreHeldByEarlierVersion`` where a daemon
+        works with an older one.
         """
         self.path = path
-        self._database = Database(path / FILE, create=create)
+        self._ownership = Ownership(path / "owner.lock")
+        self._database = Database(path / FILE, create=create, alone=self._ownership.alone)
         self.artefacts = ArtefactFolder(path / "files")
         self._unfinished = UnfinishedRecordings(path / "unfinished")
-        self._ownership = Ownership(path / "owner.lock")
 
     def close(self) -> None:
         """Drop the connection. Open runs stay open, to be found as interrupted."""

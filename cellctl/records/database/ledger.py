@@ -72,10 +72,14 @@ def seal_all(session: Session, time: datetime) -> None:
             session.merge(LedgerHeadRow(id=_HEAD, length=last.number, hash=last.hash))
 
 
-def problems(session: Session, printed: LedgerHead | None = None) -> Iterator[str]:
+def problems(
+    session: Session, printed: LedgerHead | None = None, *, more_to_come: bool = False
+) -> Iterator[str]:
     """Every place where the chain does not fit; empty when all is as it was sealed.
 
     ``printed`` is a head that was printed on a report: the chain must still contain it.
+    ``more_to_come``: this is a copy to which later entries are still to be brought, so that a value
+    may be newer or older than the last entry that is here.
     """
     rows = session.scalars(select(LedgerRow).order_by(LedgerRow.number)).all()
     yield from _chain(rows)
@@ -85,7 +89,7 @@ def problems(session: Session, printed: LedgerHead | None = None) -> Iterator[st
         if kind is None:
             yield f"{_entry(row)} is of an unknown kind"
         # The value that this entry sealed exists no longer; only the newest one can be compared.
-        elif kind.superseded and newest[row.kind, subject] != row.number:
+        elif kind.superseded and (more_to_come or newest[row.kind, subject] != row.number):
             continue
         elif row.content != _content(session, row.kind, subject):
             yield f"{row.kind} {subject} was changed after it was sealed"

@@ -9,7 +9,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import Enum, ForeignKey, String
+from sqlalchemy import BigInteger, Enum, ForeignKey, Integer, String
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from cellctl.records.database.column_types import PassComponents, PlainJson, Utc
@@ -26,6 +26,9 @@ class Base(DeclarativeBase):
 
     type_annotation_map = {  # noqa: RUF012  # SQLAlchemy's own name
         datetime: Utc,
+        # A file may be larger than the 2 GB that an INTEGER of PostgreSQL holds. SQLite, whose
+        # integers have 64 bits anyway, numbers rows by itself in a column called INTEGER alone.
+        int: BigInteger().with_variant(Integer, "sqlite"),
         Six: PlainJson,
         Matrix: PlainJson,
         Mapping[str, Any]: PlainJson,

@@ -30,11 +30,14 @@ OPENING, AUDIT, VALUE = "opening", "audit", "value"
 ALARM, ACKNOWLEDGEMENT = "alarm", "acknowledgement"
 CALIBRATION, INVALIDATION = "calibration", "invalidation"
 
-_DETAILS = (PhaseRow, FigureRow, PoseRow, PassRow, DocumentRow, ArtefactRow)
-_AT_OPENING = frozenset({"ended", "result", "fault_number", "fault"})
-"""Columns of a run that its end fills in."""
-_ACKNOWLEDGED = frozenset({"acknowledged", "acknowledged_by"})
-_INVALIDATED = frozenset({"invalidated", "invalidated_reason"})
+DETAILS = (PhaseRow, FigureRow, PoseRow, PassRow, DocumentRow, ArtefactRow)
+"""Tables of the details of a run; a table stands after those that it refers to."""
+FILLED: Mapping[str, frozenset[str]] = {
+    RUN: frozenset({"ended", "result", "fault_number", "fault"}),
+    ACKNOWLEDGEMENT: frozenset({"acknowledged", "acknowledged_by"}),
+    INVALIDATION: frozenset({"invalidated", "invalidated_reason"}),
+}
+"""Columns that are empty until an entry of this kind fills and seals them."""
 
 Content = Mapping[str, Any]
 
@@ -70,14 +73,14 @@ def _run(session: Session, row: RunRow) -> Content | None:
                 select(table).where(table.run == row.number).order_by(table.id)
             )
         ]
-        for table in _DETAILS
+        for table in DETAILS
     }
     return columns(row) | details
 
 
 def _opening(_session: Session, row: RunRow) -> Content | None:
     """Earlier versions sealed no openings."""
-    return None if row.record_schema < 3 else _without(row, _AT_OPENING)
+    return None if row.record_schema < 3 else _without(row, FILLED[RUN])
 
 
 def _gauge(_session: Session, row: GaugeRow) -> Content:
@@ -87,11 +90,11 @@ def _gauge(_session: Session, row: GaugeRow) -> Content:
 
 
 def _acknowledgement(_session: Session, row: AlarmRow) -> Content | None:
-    return _if_any(row, _ACKNOWLEDGED)
+    return _if_any(row, FILLED[ACKNOWLEDGEMENT])
 
 
 def _invalidation(_session: Session, row: CalibrationRow) -> Content | None:
-    return _if_any(row, _INVALIDATED)
+    return _if_any(row, FILLED[INVALIDATION])
 
 
 def _without(row: Base, names: frozenset[str]) -> dict[str, Any]:
@@ -109,9 +112,11 @@ KINDS: Mapping[str, SealedKind] = {
     OPENING: SealedKind(RunRow, "number", _opening),
     RUN: SealedKind(RunRow, "number", _run),
     GAUGE: SealedKind(GaugeRow, "id", _gauge),
-    ALARM: SealedKind(AlarmRow, "id", lambda _, row: _without(row, _ACKNOWLEDGED)),
+    ALARM: SealedKind(AlarmRow, "id", lambda _, row: _without(row, FILLED[ACKNOWLEDGEMENT])),
     ACKNOWLEDGEMENT: SealedKind(AlarmRow, "id", _acknowledgement),
-    CALIBRATION: SealedKind(CalibrationRow, "id", lambda _, row: _without(row, _INVALIDATED)),
+    CALIBRATION: SealedKind(
+        CalibrationRow, "id", lambda _, row: _without(row, FILLED[INVALIDATION])
+    ),
     INVALIDATION: SealedKind(CalibrationRow, "id", _invalidation),
     AUDIT: SealedKind(AuditRow, "id", lambda _, row: columns(row)),
     VALUE: SealedKind(ValueRow, "name", lambda _, row: columns(row), superseded=True),

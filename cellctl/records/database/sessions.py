@@ -6,8 +6,8 @@ failed once takes nothing more until it is opened anew.
 """
 
 import sqlite3
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from cellctl.atomic_files import make_folder_durably
-from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreUnavailable
+from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreTooNew, StoreUnavailable
 from cellctl.records.database import migration
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
@@ -27,11 +27,14 @@ _READS = "store_reads"
 class Database:
     """Sessions on one file. Used from one thread at a time."""
 
-    def __init__(self, file: Path, *, create: bool) -> None:
+    def __init__(
+        self, file: Path, *, create: bool, alone: Callable[[], AbstractContextManager[None]]
+    ) -> None:
         """Open, or create if allowed; an older store is migrated (see ``migration``).
 
         Readers migrate, too: an operator lists the runs of an old store before any daemon opens
-        it. Raises ``StoreUnavailable``, ``StoreTooNew``.
+        it. ``alone`` keeps every daemon off meanwhile. Raises ``StoreUnavailable``,
+        ``StoreTooNew``, and what ``alone`` raises.
         """
         self._failed: str | None = None
         if not (create or file.exists()):
@@ -40,8 +43,11 @@ class Database:
         try:
             make_folder_durably(file.parent)
             # A store of today is opened without a write, so without waiting for a writer's lock.
-            if not self._is_up_to_date():
-                with self._engine.begin() as connection:
+            version = self._version()
+            if version != SCHEMA_VERSION:
+                # A store without tables is nobody's yet, one of a later version is refused.
+                older = 0 < version < SCHEMA_VERSION
+                with alone() if older else nullcontext(), self._engine.begin() as connection:
                     migration.bring_up_to_date(connection, file)
         except StoreUnavailable:
             self.close()
@@ -50,9 +56,9 @@ class Database:
             self.close()
             raise StoreUnavailable(f"{file}: {_reason(error)}") from error
 
-    def _is_up_to_date(self) -> bool:
+    def _version(self) -> int:
         with self._reader().connect() as connection:
-            return migration.schema_version(connection) == SCHEMA_VERSION
+            return migration.schema_version(connection)
 
     def _reader(self) -> Engine:
         return self._engine.execution_options(**{_READS: True})
@@ -66,12 +72,16 @@ class Database:
         """A transaction that is on the disk when the block ends.
 
         Raises ``RecordNotWritten`` when it is not, and from then on always; ``RunUnknown`` when it
-        refers to a run that does not exist.
+        refers to a run that does not exist; ``StoreTooNew`` when a later version has migrated the
+        store since it was opened.
         """
         if self._failed is not None:
             raise RecordNotWritten(f"the store failed earlier: {self._failed}")
         try:
             with Session(self._engine, expire_on_commit=False) as session, session.begin():
+                version = migration.schema_version(session.connection())
+                if version != SCHEMA_VERSION:
+                    raise StoreTooNew(f"it has schema {version} since it was opened")
                 yield session
         # A refused row is a mistake of the caller and says nothing about the disk: the store goes
         # on.
