@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
@@ -125,6 +125,11 @@ bench-cameras: venv
 # Takes half an hour. A short run: python -m benchmarks.cameras.soak --cycles 20 --pulls 10 --grabs 500
 soak-cameras: venv
 	$(BIN)/python -m benchmarks.cameras.soak
+
+# Parts one after another on the fake cell for an hour; MINUTES. On a computer that has nothing else to do.
+soak: MINUTES = 60
+soak: venv
+	$(BIN)/python -m benchmarks.soak --minutes $(MINUTES)
 
 bench-antenna-vision: venv
 	$(BIN)/python -m benchmarks.antenna.vision

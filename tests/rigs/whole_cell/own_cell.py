@@ -19,6 +19,7 @@ from typing import Any, Self
 from uuid import uuid4
 
 from fakes.demo.control import Control
+from fakes.demo.page import write_settings
 from fakes.scenes.load import load
 
 ROOT = Path(__file__).parents[3]
@@ -140,6 +141,11 @@ class OwnCell:
     def demo(self, out: Path, *options: str) -> "Program":
         files = ["--scenario", str(self.scenario), "--cell", str(self.cell), "--out", str(out)]
         return self._start("cellctl", "demo", *files, *options)
+
+    def page(self) -> "Program":
+        """The operator page of the daemon, on any free port."""
+        settings, _ = write_settings(self.folder)
+        return self._start("cellctl.hmi", "serve", "--settings", str(settings))
 
     def plc(self, *options: str) -> "Program":
         return self._start("fakes", "plc", "--port", str(self.modbus_port), *options)
