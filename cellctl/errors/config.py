@@ -182,3 +182,12 @@ class NoViewsStated(PlanningError):
     text = "No measurements to plan"
     cause = "No recipe's process states what its heads measure, or the cell file has no recipe."
     remedy = "Teach the poses of the cameras by hand. See docs/planning.md."
+
+
+class StudyUnavailable(ConfigError):
+    """The trials of a study are not installed."""
+
+    number = 108
+    text = "Studies need a checkout of cellctl"
+    cause = "cellctl was installed as a package, without the campaigns and the fake cells' files."
+    remedy = "Run `cellctl study` of an installed release or of a checkout."
