@@ -116,7 +116,9 @@ put_once() { [ -e "$INTO$2" ] || put "$1" "$2"; }
 
 # Units and templates of a release. A cell file or drawing that is there is the cell's own.
 put_files() {
-    for unit in cellctl.service cellctl-hmi.service; do
+    for unit in cellctl.service cellctl-hmi.service cellctl-forward.service; do
+        # A release that `rollback` returns to may be older than a unit.
+        [ -e "$1/systemd/$unit" ] || continue
         sed "s#/opt/cellctl/#$INTO$PREFIX/#" "$1/systemd/$unit" >"$RELEASES/unit"
         put "$RELEASES/unit" "/etc/systemd/system/$unit"
     done

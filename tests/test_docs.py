@@ -12,6 +12,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
+from benchmarks.study.__main__ import app as study_app
 from cellctl.api.modbus.document import register_map_document
 from cellctl.cli.commands import whole_app
 from cellctl.cli.faults import catalogue_page
@@ -101,8 +102,9 @@ def test_command_exists(written: Written) -> None:
         assert words[1] in targets()
         assert all(_SETTING.fullmatch(word) for word in words[2:])
     elif words[0] == "cellctl":
-        app = demo_app if words[1:2] == ["demo"] else whole_app()
-        options_exist(app, words[2:] if app is demo_app else words[1:])
+        # Programs that `cellctl` hands on to.
+        other = {"demo": demo_app, "study": study_app}.get("".join(words[1:2]))
+        options_exist(other or whole_app(), words[2:] if other else words[1:])
     elif words[:3] == ["python", "-m", "fakes"]:
         inner = {"demo": demo_app, "plc": plc_app}.get(words[3] if len(words) > 3 else "")
         options_exist(inner or fakes_app, words[4:] if inner else words[3:])
@@ -178,7 +180,9 @@ def test_cheap_commands_run() -> None:
 
 
 @pytest.mark.parametrize(
-    "app", [whole_app(), fakes_app, demo_app, plc_app], ids=["cellctl", "fakes", "demo", "plc"]
+    "app",
+    [whole_app(), fakes_app, demo_app, plc_app, study_app],
+    ids=["cellctl", "fakes", "demo", "plc", "study"],
 )
 def test_every_command_explains_itself(app: typer.Typer) -> None:
     def explain(command: Any, path: list[str]) -> None:

@@ -106,6 +106,13 @@ def _demo(app: typer.Typer) -> None:
     app.command("demo", rich_help_panel=_CELL, context_settings=PASS_THROUGH)(demo)
 
 
+def _study(app: typer.Typer) -> None:
+    from cellctl.cli.demo import PASS_THROUGH
+    from cellctl.cli.study import study
+
+    app.command("study", rich_help_panel=OFFLINE, context_settings=PASS_THROUGH)(study)
+
+
 def _robot(app: typer.Typer) -> None:
     from cellctl.cli.commissioning.robot import robot
 
@@ -166,6 +173,12 @@ def _faults(app: typer.Typer) -> None:
     app.command("faults", rich_help_panel=_RECORDS)(faults)
 
 
+def _fleet(app: typer.Typer) -> None:
+    from cellctl.cli.fleet.app import app as fleet
+
+    app.add_typer(fleet, name="fleet", rich_help_panel=_RECORDS)
+
+
 def _calibrate(app: typer.Typer) -> None:
     from cellctl.cli.offline import calibrate
 
@@ -216,9 +229,11 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "replay": _replay,
     "faults": _faults,
     "audit": _audit,
+    "fleet": _fleet,
     "calibrate": _calibrate,
     "measure": _measure,
     "judge-insertion": _judge_insertion,
     "identify-payload": _identify_payload,
     "plan": _plan,
+    "study": _study,
 }

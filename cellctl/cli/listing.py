@@ -55,10 +55,12 @@ FILES = (
     Listed("replay", _RECORDS, "Compute every measurement of a run anew from its recordings."),
     Listed("faults", _RECORDS, "All faults, installed packages' included; or one in words."),
     Listed("audit", _RECORDS, "Who did what: commands, gauges, acknowledgements."),
+    Listed("fleet", _RECORDS, "Records of many cells in one PostgreSQL: deliver, search, verify."),
     Listed("calibrate", OFFLINE, "Calibrate from files."),
     Listed("measure", OFFLINE, "Measure the named holes of a feature file in a stereo pair."),
     Listed("plan", OFFLINE, "Check and plan the moves of a cell by its model."),
     Listed("judge-insertion", OFFLINE, "Whether a part is inserted, by its recorded curve."),
+    Listed("study", OFFLINE, "Run a trial of a recipe over thousands of seeds on Dask."),
     Listed("identify-payload", OFFLINE, "Identify mass, centre of mass and offsets from wrenches."),
 )
 

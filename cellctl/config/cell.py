@@ -3,6 +3,7 @@
 import ipaddress
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
+from urllib.parse import parse_qsl, urlsplit
 
 from pydantic import Field, SerializeAsAny, field_validator, model_validator
 
@@ -22,6 +23,8 @@ from cellctl.config.devices import (
 )
 from cellctl.config.recipe import Recipe
 from cellctl.config.zones import ZoneConfig
+
+_SECRETS = frozenset({"password", "passfile", "sslpassword"})
 
 
 class Plc(Section):
@@ -77,6 +80,37 @@ class LocalApi(Section):
     may, too."""
 
 
+class FleetConfig(Section):
+    """The database of all cells, to which a program beside the daemon delivers the records."""
+
+    url: Annotated[str, Field(max_length=500)]
+    """``postgresql://USER@HOST:PORT/DATABASE``, with options of libpq behind a question mark. It
+    has no password: cell files are copied, sent and kept in records."""
+    password_file: str = ""
+    """Absolute; its first line is the password. Empty: the environment has it."""
+
+    @field_validator("url")
+    @classmethod
+    def _names_a_database_and_no_password(cls, url: str) -> str:
+        return checked_url(url)
+
+
+def checked_url(url: str) -> str:
+    """The URL of a fleet database; raises ``ValueError``, whose text never holds a password."""
+    try:
+        parts = urlsplit(url)
+        password, user, host = parts.password, parts.username, parts.hostname
+        _ = parts.port
+    except ValueError:
+        # Without the reason, which may quote what stands before the @.
+        raise ValueError("it reads postgresql://USER@HOST:PORT/DATABASE") from None
+    if password is not None or _SECRETS & {key for key, _ in parse_qsl(parts.query)}:
+        raise ValueError("a password does not belong here; give password_file or the environment")
+    if parts.scheme != "postgresql" or not (user and host and parts.path.strip("/")):
+        raise ValueError("it reads postgresql://USER@HOST:PORT/DATABASE")
+    return url
+
+
 class CellConfig(Section):
     """Everything the daemon needs to know about one cell."""
 
@@ -87,6 +121,8 @@ class CellConfig(Section):
     """Relative to the cell file."""
     plc: Plc = Plc()
     local_api: LocalApi = LocalApi()
+    fleet: FleetConfig | None = None
+    """The daemon does not look at it."""
     robots: dict[DeviceName, RobotConfig] = Field(default_factory=dict)
     stereo_cameras: dict[DeviceName, StereoCameraConfig] = Field(default_factory=dict)
     cameras: dict[DeviceName, CameraConfig] = Field(default_factory=dict)

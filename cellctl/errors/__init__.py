@@ -17,6 +17,7 @@ CellError
 ├── LineError         7xx   errors.line         line PLC and commands
 │   └── LocalError    71x   errors.local        operator commands on the cell's PC, 74x
 ├── RecordsError      8xx   errors.records      run store and artefacts
+│   └── FleetError     83x  errors.records       records of many cells in one database
 └── InternalError     9xx   errors.internal     cellctl itself
 """
 

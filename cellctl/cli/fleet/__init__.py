@@ -1,0 +1,1 @@
+"""`cellctl fleet`: the records of many cells in one database."""

@@ -1,0 +1,50 @@
+"""`cellctl fleet forward`: the program that delivers the records of a cell."""
+
+from contextlib import closing
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from cellctl import log
+from cellctl.cli.fleet.store_option import opened_fleet
+from cellctl.config.load import load_cell
+from cellctl.errors.records import FleetNotNamed
+from cellctl.version import software
+
+
+def forward(
+    cell_file: Annotated[Path, typer.Argument(help="The cell's TOML file.")],
+    data_dir: Annotated[
+        Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
+    ] = None,
+    *,
+    once: Annotated[bool, typer.Option(help="Deliver what there is, then end.")] = False,
+) -> None:
+    """Deliver the cell's records to its fleet database until Ctrl-C; runs beside the daemon.
+
+    A server that is away is asked again and again, at most a minute apart. With --once a failure is
+    an error.
+    """
+    from cellctl.fleet.cell_records import CellRecords
+    from cellctl.fleet.delivery import Delivery
+    from cellctl.fleet.forwarder import Forwarder
+
+    log.configure()
+    cell = load_cell(cell_file)
+    if cell.fleet is None:
+        raise FleetNotNamed(f"{cell_file} has no [fleet]")
+    records = CellRecords(data_dir or Path(cell.data_dir))
+    with (
+        closing(records),
+        opened_fleet(cell.fleet.url, cell.fleet.password_file) as fleet,
+    ):
+        delivery = Delivery(cell.name, records, fleet, software())
+        if not once:
+            try:
+                Forwarder(delivery).run()
+            except KeyboardInterrupt:
+                raise typer.Exit(0) from None
+        while delivery.deliver():
+            pass
+        typer.echo(f"all {records.length()} entries of the ledger are delivered")

@@ -1,0 +1,57 @@
+"""Options of the commands that look into records; the same for one store and for a fleet."""
+
+from datetime import datetime, timedelta
+from typing import Annotated
+
+import typer
+
+from cellctl.records.run_filter import RunFilter
+from cellctl.records.seals import LedgerHead
+
+_DAY = ["%Y-%m-%d"]
+_HASH_DIGITS = 64
+
+AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
+Serial = Annotated[str, typer.Option(help="Only this serial number.")]
+RecipeName = Annotated[str, typer.Option(help="Only of the recipe with this name.")]
+Operator = Annotated[str, typer.Option(help="Only this operator's.")]
+Result = Annotated[str, typer.Option(help="good, bad, stopped, aborted, interrupted, open.")]
+FaultNumber = Annotated[int | None, typer.Option(help="Only where it came up.", min=1)]
+CalibrationId = Annotated[str, typer.Option(help="Only what used it; its identity.")]
+Since = Annotated[datetime | None, typer.Option(help="First day.", formats=_DAY)]
+Until = Annotated[datetime | None, typer.Option(help="Last day.", formats=_DAY)]
+
+
+def wanted_runs(
+    *,
+    serial: str,
+    recipe: str,
+    operator: str,
+    result: str,
+    fault: int | None,
+    calibration: str,
+    since: datetime | None,
+    until: datetime | None,
+) -> RunFilter:
+    """What the options ask for."""
+    return RunFilter(
+        serial=serial,
+        recipe=recipe,
+        operator=operator,
+        result=result,
+        fault=fault,
+        calibration=calibration,
+        # A day without a zone is one of this computer's, and the last one counts to its end.
+        since=since and since.astimezone(),
+        until=until and (until + timedelta(days=1)).astimezone(),
+    )
+
+
+def printed_head(head: str) -> LedgerHead | None:
+    """From the text on a report; raises ``typer.BadParameter``."""
+    if not head:
+        return None
+    length, _, found = head.partition(":")
+    if not length.isdecimal() or len(found) != _HASH_DIGITS:
+        raise typer.BadParameter("it reads LENGTH:HASH", param_hint="--head")
+    return LedgerHead(int(length), found)

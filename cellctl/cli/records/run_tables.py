@@ -1,0 +1,120 @@
+"""Runs as people and programs read them on a terminal: lists, and one run in figures."""
+
+from collections.abc import Sequence, Set
+from dataclasses import asdict
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from cellctl.cli.records.plain_json import as_plain
+from cellctl.records.entered.gauges import gauge_limits, judge_gauge, part_verdict
+from cellctl.records.entered.notes import note_words, notes_of
+from cellctl.records.entered.said_by import gauge_entries, measured_by, said_by
+from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
+from cellctl.records.figures import NO_LIMIT
+from cellctl.records.outcome import GOOD_ENDS, outcome
+from cellctl.records.report.acceptance.faults import fault_box
+from cellctl.records.report.acceptance.timeline import during
+from cellctl.records.report.text import decimals, duration, fixed, number, quantity
+
+WIDE = 100
+"""Columns from which on the list has the name of the process."""
+_COLOURS = {"open": "yellow", **dict.fromkeys(GOOD_ENDS, "green")}
+
+
+def show_record(record: RunRecord, audit: Sequence[AuditEntry], *, as_json: bool) -> None:
+    """One run in figures; ``audit``: of the store that holds it."""
+    number = record.head.number
+    notes, entered = notes_of(number, audit), gauge_entries(number, audit)
+    if as_json:
+        typer.echo(as_plain(asdict(record) | {"notes": [asdict(note) for note in notes]}))
+        return
+    console = Console()
+    console.print(run_table([record.head], wide=console.width >= WIDE))
+    if ended := fault_box(record, during(record, audit)):
+        # Also a run that a command has ended: by whom, and in which step.
+        where = f"step {ended.step}" if record.phases else ended.step
+        console.print(f"{ended.text}; {where}", style="red", markup=False)
+    for loop in dict.fromkeys(entry.loop for entry in record.passes):
+        console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
+    judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
+    if judged:
+        console.print(_figures(judged))
+    for gauge in record.gauge_history:
+        console.print(gauge_line(record, gauge, entered), markup=False)
+    if part_verdict(record) != record.head.result:
+        console.print("the part is bad: a plug gauge is beyond its limit", style="bold red")
+    for alarm in record.alarms:
+        console.print(f"alarm {alarm.text}", markup=False)
+    for entry in notes:
+        console.print(f"note of {said_by(entry)}: {note_words(entry)}", markup=False)
+
+
+def gauge_line(record: RunRecord, entry: Gauge, entered: Sequence[AuditEntry]) -> str:
+    """One entry with who, when, with which gauge, and what it says."""
+    verdict = judge_gauge(record, entry)
+    least_mm = gauge_limits(record).get(entry.hole, NO_LIMIT).lower
+    limit = "" if least_mm is None else f", at least {least_mm:.2f} mm: {verdict}"
+    with_gauge = f", gauge {entry.gauge_id}" if entry.gauge_id else ""
+    replaced = "" if entry in record.gauges else ", replaced by a later entry"
+    return (
+        f"pin hole {entry.hole}: gauge {entry.diameter_mm:.2f} mm ({measured_by(entry, entered)})"
+        f"{limit}{with_gauge}, {entry.time:%Y-%m-%d %H:%M}{replaced}"
+    )
+
+
+def run_table(
+    runs: Sequence[RunHead], spoilt: Set[int] = frozenset(), *, wide: bool = True
+) -> Table:
+    """One line a run; ``spoilt``: runs with a good result and a gauge beyond its limit."""
+    table = Table(box=None)
+    for name in ("run", "serial", "recipe", *(("process",) if wide else ())):
+        # Folded and not cut: a number that is cut is another one.
+        table.add_column(name, no_wrap=name == "run", overflow="fold")
+    for name in ("mode", "started (UTC)", "duration", "result"):
+        table.add_column(name, no_wrap=True)
+    for head in runs:
+        table.add_row(*run_row(head, spoilt=head.number in spoilt, wide=wide))
+    return table
+
+
+def run_row(head: RunHead, *, spoilt: bool, wide: bool) -> tuple[str, ...]:
+    """The cells of this line."""
+    result = outcome(head.mode, head.result, spoilt=spoilt)
+    colour = _COLOURS.get(result, "red")
+    mark = " (sim)" if head.simulated else ""
+    return (
+        str(head.number),
+        head.serial + mark,
+        head.recipe_name,
+        *((head.process,) if wide else ()),
+        head.mode.lower(),
+        f"{head.started:%Y-%m-%d %H:%M}",
+        duration(head.started, head.ended),
+        f"[{colour}]{result}[/]",
+    )
+
+
+def _passes(passes: Sequence[LoopPass]) -> Table:
+    last = passes[-1].components
+    names = (f"{component.name} {component.unit}".rstrip() for component in last)
+    table = Table("pass", *names, "µm", box=None)
+    for entry in passes:
+        errors = (
+            fixed(component.value, decimals(component.unit), signed=True)
+            for component in entry.components
+        )
+        table.add_row(str(entry.number), *errors, fixed(entry.residual_um, 1))
+    limits = (f"± {number(component.limit or 0.0)}" for component in last)
+    table.add_row("limit", *limits, "", style="dim")
+    return table
+
+
+def _figures(judged: Sequence[Figure]) -> Table:
+    table = Table("figure", "value", "at least", "at most", "verdict", box=None)
+    for entry in judged:
+        texts = (quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper))
+        style = "green" if entry.verdict is Verdict.PASS else "red"
+        table.add_row(entry.label, *texts, f"[{style}]{entry.verdict}[/]")
+    return table

@@ -1,0 +1,77 @@
+"""Delivers a cell's records as long as it runs, however long the server is away."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from cellctl import log
+from cellctl.errors.base import CellError
+from cellctl.errors.records import FleetUnreachable, RecordsError, StoreTooNew
+from cellctl.fleet.delivery import Delivery
+
+_log = log.get(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class ForwarderPace:
+    """How often the store and the server are asked."""
+
+    look_s: float = 2.0
+    """Between two looks for new entries."""
+    retry_s: float = 2.0
+    """After the first failure; twice as long after each further one."""
+    retry_most_s: float = 60.0
+
+
+PACE = ForwarderPace()
+
+
+class Forwarder:
+    """One cell to one fleet database.
+
+    Started and ended at will, by a signal too: it keeps nothing that a start would need.
+    """
+
+    def __init__(
+        self,
+        delivery: Delivery,
+        pace: ForwarderPace = PACE,
+        wait: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._delivery = delivery
+        self._pace = pace
+        self._wait = wait
+        self._fault = ""
+        self._failures = 0
+
+    def run(self, until: Callable[[], bool] = lambda: False) -> None:
+        """Deliver and wait, until somebody ends the program or ``until`` is true.
+
+        Raises ``StoreTooNew`` when cellctl was upgraded below it: it has to be started anew.
+        """
+        while not until():
+            self._wait(self._once())
+
+    def _once(self) -> float:
+        """One batch, or the reason why not; how long to wait."""
+        try:
+            left = self._delivery.deliver()
+        except StoreTooNew:
+            raise
+        except RecordsError as fault:
+            return self._failed(fault)
+        if self._fault:
+            _log.info("records are delivered again", still_to_come=left)
+            self._fault = ""
+        self._failures = 0
+        return 0.0 if left else self._pace.look_s
+
+    def _failed(self, fault: CellError) -> float:
+        self._failures += 1
+        if str(fault) != self._fault:
+            # Said once, and again when the reason is another one: a server may be away for weeks.
+            write = _log.warning if isinstance(fault, FleetUnreachable) else _log.error
+            write("records are not delivered", fault=str(fault), remedy=fault.remedy)
+            self._fault = str(fault)
+        doubled = self._pace.retry_s * 2.0 ** min(self._failures - 1, 16)
+        return min(doubled, self._pace.retry_most_s)
