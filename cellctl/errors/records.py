@@ -268,7 +268,7 @@ class FleetNotInstalled(FleetError):
     number = 835
     text = "The library for PostgreSQL is not installed"
     cause = "cellctl was installed without its extra for fleets."
-    remedy = "Install it: pip install 'cellctl[fleet]'."
+    remedy = "Install it: `pip install cellctl[fleet]`."
 
 
 class RecordUndeliverable(FleetError):
@@ -286,9 +286,9 @@ class FleetNotNamed(FleetError):
     number = 837
     text = "No usable address of a fleet database"
     cause = (
-        "The cell file has no [fleet], --store is missing or wrong, or no file has the password."
+        "`[fleet]` of the cell file or `--store` is missing or wrong, or the password's file is."
     )
     remedy = (
-        "Give postgresql://USER@HOST:PORT/DATABASE as url under [fleet] or as --store, and the "
-        "password in a file or in CELLCTL_FLEET_PASSWORD."
+        "Give `postgresql://USER@HOST:PORT/DATABASE` as `url` under `[fleet]` or as `--store`, and "
+        "the password in a file or in `CELLCTL_FLEET_PASSWORD`."
     )
