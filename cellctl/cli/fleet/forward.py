@@ -30,10 +30,10 @@ def forward(
     from cellctl.fleet.delivery import Delivery
     from cellctl.fleet.forwarder import Forwarder
 
-    log.configure()
     cell = load_cell(cell_file)
     if cell.fleet is None:
         raise FleetNotNamed(f"{cell_file} has no [fleet]")
+    log.configure()
     records = CellRecords(data_dir or Path(cell.data_dir))
     with (
         closing(records),

@@ -120,7 +120,7 @@ def test_without_dask_it_says_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delitem(sys.modules, "benchmarks.study.farm", raising=False)
-    monkeypatch.setitem(sys.modules, "dask", None)
+    monkeypatch.setitem(sys.modules, "distributed", None)
     done = CliRunner().invoke(program.app, ["deck-mating", "--out", str(tmp_path)])
     assert done.exit_code == 1
     assert "pip install 'cellctl[study]'" in done.stderr
