@@ -39,6 +39,8 @@ class SoakedCell:
     """Programs that run, and what they kept so far."""
 
     own: OwnCell
+    daemon: Program
+    page: Program
     cycles: list[Cycle] = field(default_factory=list)
     _kept: dict[str, list[Kept]] = field(default_factory=dict)
     _pids: dict[str, int] = field(default_factory=dict)
@@ -52,7 +54,7 @@ class SoakedCell:
         daemon.ready()
         page = own.page()
         page.ready()
-        return cls(own, _pids=processes(daemon, page))
+        return cls(own, daemon, page)
 
     def __enter__(self) -> Self:
         return self
@@ -92,6 +94,9 @@ class SoakedCell:
         return good, said
 
     def _look(self) -> None:
+        # Only now: the daemon starts its vision workers with the first images.
+        if not self._pids:
+            self._pids = processes(self.daemon, self.page)
         for name, pid in self._pids.items():
             try:
                 found = kept(pid)
@@ -112,7 +117,7 @@ def _bring_to_idle(line: OutsidePlc) -> None:
 
 
 def processes(daemon: Program, page: Program) -> dict[str, int]:
-    """The processes of a cell's PC by name."""
+    """The processes of a cell's PC by name; raises ``Died`` where there is no guard or worker."""
     found = {"daemon": daemon.process.pid, "page": page.process.pid}
     for pid, command in sorted(daemon.descendants().items()):
         if _GUARD in command:
@@ -120,6 +125,9 @@ def processes(daemon: Program, page: Program) -> dict[str, int]:
         # The command line of a child that multiprocessing has made says no more than this.
         elif _WORKER in command and _parent(pid) == daemon.process.pid:
             found[_numbered("worker", found)] = pid
+    missing = [kind for kind in ("guard", "worker") if f"{kind} 1" not in found]
+    if missing:
+        raise Died(f"the daemon has no {' and no '.join(missing)}")
     return found
 
 
