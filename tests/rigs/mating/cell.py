@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -54,10 +55,36 @@ class SensorFault:
 
 
 class MatingCell:
-    """Drawn from a seed; the deck at the stand-off within the loop's thresholds."""
+    """A world whose deck is at its stand-off, with what was measured of it."""
 
     def __init__(
         self,
+        world: DeckOnFrame,
+        rng: np.random.Generator,
+        *,
+        M_T_D: UncertainPose,
+        flange_T_deck: RigidTransform,
+    ) -> None:
+        self.world, self.rng = world, rng
+        self.M_T_D, self.flange_T_deck = M_T_D, flange_T_deck
+        self.faults = FaultBoard("main", ROBOT_FAULTS)
+        self.arm = world.arms["main"]
+        self.start_s = world.time_s
+        self.controller = Controller(self.arm, self.faults)
+        self.robot = WorldRobot(self.controller, self.start_s)
+        self.sensor_fault = SensorFault()
+        sensor = world.scenario.force_sensors["force"]
+        self.flange_T_sensor = from_written(sensor.flange_T_sensor_mm_deg)
+        self.guard = WorldGuard(self._identify(), self.flange_T_sensor, self._guard_stop)
+        self._stops = 0
+        self._ticks = round(self.start_s / TICK_S)
+        self.robot.tick(self.start_s, guard_beats=True)
+        raw = world.sensor_wrench("force", self.start_s)
+        self.guard.tick(self.start_s, raw, self.robot.reported)
+
+    @classmethod
+    def drawn(
+        cls,
         seed: int,
         *,
         stiffness_n_m: float,
@@ -65,28 +92,20 @@ class MatingCell:
         pins: Pins | None = None,
         left: Array | None = None,
         imperfections: Mapping[str, float] | None = None,
-    ) -> None:
-        """``left``: what the loop before leaves (m, rad), shape (6,); drawn when None.
-        ``imperfections``: scales in place of those of the scenario file."""
-        self.rng = np.random.default_rng([seed, 77])
-        self._left = left
-        self.world = DeckOnFrame(
-            _scenario(stiffness_n_m, stop_latency_s, pins, imperfections), seed
+    ) -> Self:
+        """Drawn from a seed, the deck within the loop's thresholds and measured as well as vision
+        measures it.
+
+        ``left``: what the loop before leaves (m, rad), shape (6,); drawn when None.
+        ``imperfections``: scales in place of those of the scenario file.
+        """
+        rng = np.random.default_rng([seed, 77])
+        scenario = _scenario(stiffness_n_m, stop_latency_s, pins, imperfections)
+        world = DeckOnFrame(scenario, seed)
+        _approach_stand_off(world, rng.uniform(-THRESHOLD, THRESHOLD) if left is None else left)
+        return cls(
+            world, rng, M_T_D=_measured(world, rng), flange_T_deck=_calibrated_deck(world, rng)
         )
-        self.faults = FaultBoard("main", ROBOT_FAULTS)
-        self.arm = self.world.arms["main"]
-        self.start_s = self._approach_stand_off()
-        self.controller = Controller(self.arm, self.faults)
-        self.robot = WorldRobot(self.controller, self.start_s)
-        self.sensor_fault = SensorFault()
-        sensor = self.world.scenario.force_sensors["force"]
-        self.flange_T_sensor = from_written(sensor.flange_T_sensor_mm_deg)
-        self.guard = WorldGuard(self._identify(), self.flange_T_sensor, self._guard_stop)
-        self._stops = 0
-        self._ticks = round(self.start_s / TICK_S)
-        self.robot.tick(self.start_s, guard_beats=True)
-        raw = self.world.sensor_wrench("force", self.start_s)
-        self.guard.tick(self.start_s, raw, self.robot.reported)
 
     # -- time -----------------------------------------------------------------------------------
     def advance(self, to_s: float) -> None:
@@ -104,53 +123,10 @@ class MatingCell:
         self._stops += 1
         self.controller.supervise("GRD", ["ABORT", str(SESSION), str(self._stops)], time_s)
 
-    # -- the steps before mating ------------------------------------------------------------------
+    # -- truth and calibration --------------------------------------------------------------------
     def true_pose(self) -> RigidTransform:
         """Truth: M_T_D."""
-        parts, deck = self.world.placed.parts, self.world.cell_T_deck()
-        assert parts is not None
-        assert deck is not None
-        return parts.cell_T_frame.inv() * deck
-
-    def measured(self) -> UncertainPose:
-        """M_T_D as vision measures it at the end of its loop."""
-        error = _displacement(self.rng.normal(0.0, VISION_SIGMA))
-        return UncertainPose(self.true_pose() * error, np.diag(VISION_SIGMA**2))
-
-    def calibrated_deck(self) -> RigidTransform:
-        """As the deck-flange calibration gives it: what encoders and truth say together."""
-        deck = self.world.cell_T_deck()
-        assert deck is not None
-        encoder = self.arm.encoder_pose(self.world.time_s)
-        error = _displacement(self.rng.normal(0.0, np.repeat([2e-5, np.deg2rad(0.003)], 3)))
-        return encoder.inv() * deck * error
-
-    def _approach_stand_off(self) -> float:
-        """What measuring and compensating does before, with truth for measurements."""
-        world, arm = self.world, self.arm
-        scenario = world.scenario
-        above = from_written(scenario.taught["main"]["deck_measure"])
-        joints = inverse(
-            scenario.robots["main"].chain_mm, above, np.deg2rad(scenario.robots["main"].home_deg)
-        )
-        arm.start_joint(world.time_s, joints, 100)
-        self._wait()
-        parts = world.placed.parts
-        assert parts is not None
-        drawn = self.rng.uniform(-THRESHOLD, THRESHOLD)
-        left = _displacement(drawn if self._left is None else self._left)
-        wanted = parts.cell_T_frame * pose_from_xyzabc([0, 0, 25, 0, 0, 0]) * left
-        for _ in range(4):
-            deck = world.cell_T_deck()
-            assert deck is not None
-            correction = wanted * deck.inv()
-            arm.start_linear(world.time_s, correction * arm.encoder_pose(world.time_s), 0.25, 1.0)
-            self._wait()
-        world.advance(world.time_s + 1.0)
-        return world.time_s
-
-    def _wait(self) -> None:
-        self.world.advance(self.arm.standstill_s + 0.05)
+        return true_M_T_D(self.world)
 
     def _identify(self) -> GravityCompensation:
         """The compensation as the payload procedure finds it: 17 poses, real sensor."""
@@ -170,6 +146,50 @@ class MatingCell:
             rotations.append(flange * self.flange_T_sensor.rotation)
             wrenches.append(sensor.matrix @ load + sensor.offset + noise)
         return fit_affine24(Rotation.concatenate(rotations), np.array(wrenches)).compensation
+
+
+def true_M_T_D(world: DeckOnFrame) -> RigidTransform:
+    """The deck in the frame."""
+    parts, deck = world.placed.parts, world.cell_T_deck()
+    assert parts is not None
+    assert deck is not None
+    return parts.cell_T_frame.inv() * deck
+
+
+def _measured(world: DeckOnFrame, rng: np.random.Generator) -> UncertainPose:
+    """M_T_D as vision measures it at the end of its loop."""
+    error = _displacement(rng.normal(0.0, VISION_SIGMA))
+    return UncertainPose(true_M_T_D(world) * error, np.diag(VISION_SIGMA**2))
+
+
+def _calibrated_deck(world: DeckOnFrame, rng: np.random.Generator) -> RigidTransform:
+    """As the deck-flange calibration gives it: what encoders and truth say together."""
+    deck = world.cell_T_deck()
+    assert deck is not None
+    encoder = world.arms["main"].encoder_pose(world.time_s)
+    error = _displacement(rng.normal(0.0, np.repeat([2e-5, np.deg2rad(0.003)], 3)))
+    return encoder.inv() * deck * error
+
+
+def _approach_stand_off(world: DeckOnFrame, left: Array) -> None:
+    """What measuring and compensating does before, with truth for measurements."""
+    arm, scenario = world.arms["main"], world.scenario
+    above = from_written(scenario.taught["main"]["deck_measure"])
+    joints = inverse(
+        scenario.robots["main"].chain_mm, above, np.deg2rad(scenario.robots["main"].home_deg)
+    )
+    arm.start_joint(world.time_s, joints, 100)
+    world.advance(arm.standstill_s + 0.05)
+    parts = world.placed.parts
+    assert parts is not None
+    wanted = parts.cell_T_frame * pose_from_xyzabc([0, 0, 25, 0, 0, 0]) * _displacement(left)
+    for _ in range(4):
+        deck = world.cell_T_deck()
+        assert deck is not None
+        correction = wanted * deck.inv()
+        arm.start_linear(world.time_s, correction * arm.encoder_pose(world.time_s), 0.25, 1.0)
+        world.advance(arm.standstill_s + 0.05)
+    world.advance(world.time_s + 1.0)
 
 
 def _displacement(vector: Array) -> RigidTransform:

@@ -142,7 +142,7 @@ def run_trial(
     ``special``: further arguments of the cell; ``settings``: of the mating.
     """
     latency_s = trial.stop_latency_ms / 1e3
-    cell = MatingCell(
+    cell = MatingCell.drawn(
         trial.seed, stiffness_n_m=trial.stiffness_n_m, stop_latency_s=latency_s, **special
     )
     if prepare is not None:
@@ -183,9 +183,9 @@ def plan_for(cell: MatingCell, settings: MatingSettings) -> MatingPlan:
     """The plan from what vision and calibration say about the cell."""
     return plan_mating(
         base_T_flange=cell.arm.encoder_pose(cell.world.time_s),
-        flange_T_deck=cell.calibrated_deck(),
+        flange_T_deck=cell.flange_T_deck,
         flange_T_sensor=cell.flange_T_sensor,
-        M_T_D=cell.measured(),
+        M_T_D=cell.M_T_D,
         deck_thickness_m=DECK_THICKNESS_M,
         over_travel_m=0.010,
         settings=settings,

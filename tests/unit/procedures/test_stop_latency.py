@@ -32,7 +32,7 @@ async def go_on(_number: int, _total: int) -> None:
 
 
 def measured(latency_s: float) -> tuple[MatingCell, StopLatency]:
-    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=latency_s, imperfections=SAME_STOPS)
+    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=latency_s, imperfections=SAME_STOPS)
 
     async def run() -> StopLatency:
         return await measure_stop_latency(
@@ -54,7 +54,7 @@ def test_the_latency_of_the_fake_is_found(latency_s: float) -> None:
 
 
 def test_a_robot_that_overhears_the_stop_is_no_latency() -> None:
-    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=0.05)
     before_m = cell.robot.reported.translation
 
     async def run() -> None:
@@ -67,7 +67,7 @@ def test_a_robot_that_overhears_the_stop_is_no_latency() -> None:
 
 
 def test_too_few_speeds_are_refused() -> None:
-    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=0.05)
 
     async def run() -> StopLatency:
         return await measure_stop_latency(cell.robot, UP, go_on, speeds_m_s=(8e-3,), repeats=1)
@@ -77,7 +77,7 @@ def test_too_few_speeds_are_refused() -> None:
 
 
 def test_a_robot_that_is_slowed_down_at_its_panel_measures_nothing() -> None:
-    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=0.05)
     before_m, full = cell.robot.reported.translation, cell.robot.state
 
     def slowed(max_age_s: float = 0.25) -> RobotState:
@@ -94,7 +94,7 @@ def test_a_robot_that_is_slowed_down_at_its_panel_measures_nothing() -> None:
 
 
 def test_a_hold_is_obeyed_before_each_stop() -> None:
-    cell = MatingCell(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=0.05)
     asked: list[tuple[int, int]] = []
 
     async def held_at_the_second(number: int, total: int) -> None:
@@ -113,7 +113,7 @@ def test_a_hold_is_obeyed_before_each_stop() -> None:
 
 
 def test_a_still_wrench_is_the_mean_of_steady_readings() -> None:
-    cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05, imperfections=LINEAR_SENSOR)
+    cell = MatingCell.drawn(2, stiffness_n_m=1e6, stop_latency_s=0.05, imperfections=LINEAR_SENSOR)
 
     async def run(steady_n: float = STEADY_N) -> tuple[object, np.ndarray]:
         sensor_frame = cell.flange_T_sensor
@@ -123,7 +123,7 @@ def test_a_still_wrench_is_the_mean_of_steady_readings() -> None:
     sensor = cell.world.truth.force_sensors["force"]
     load = np.linalg.solve(sensor.matrix, wrench - sensor.offset)
     assert np.linalg.norm(load[:3]) == pytest.approx(200.0 * 9.80665, rel=0.002)
-    cell = MatingCell(2, stiffness_n_m=1e6, stop_latency_s=0.05)
+    cell = MatingCell.drawn(2, stiffness_n_m=1e6, stop_latency_s=0.05)
     with pytest.raises(NotSettled, match="scatter"):
         run_simulated(cell.start_s, cell.advance, partial(run, steady_n=0.1))
 

@@ -31,7 +31,7 @@ SOON_S = 0.05
 def cell_of(
     seed: int = 1, stiffness_n_m: float = 3e6, stop_latency_s: float = LATENCY_S
 ) -> MatingCell:
-    return MatingCell(seed, stiffness_n_m=stiffness_n_m, stop_latency_s=stop_latency_s)
+    return MatingCell.drawn(seed, stiffness_n_m=stiffness_n_m, stop_latency_s=stop_latency_s)
 
 
 def mated(

@@ -71,7 +71,7 @@ def raised(world: MatingCell, height_m: float) -> RigidTransform:
 # A whole mating comes before. `test_leaving_contact.py` lifts a deck off without one.
 @pytest.mark.long
 def test_a_deck_that_was_just_seated_comes_off_without_a_fault() -> None:
-    world = MatingCell(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    world = MatingCell.drawn(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
     plan = plan_for(world, nominal_settings(LATENCY_S))
     seated_n: list[float] = []
 
@@ -89,14 +89,14 @@ def test_a_deck_that_was_just_seated_comes_off_without_a_fault() -> None:
 
 
 def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
-    world = MatingCell(8, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    world = MatingCell.drawn(8, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
     arrivals = Arrivals()
     run, above = run_on(world, arrivals), raised(world, 0.04)
 
     async def up_and_down() -> None:
-        await run.move_flange(above, world.calibrated_deck())
+        await run.move_flange(above, world.flange_T_deck)
         lower = RigidTransform.from_translation([0, 0, -0.015]) * above
-        await run.lower_flange(lower, world.calibrated_deck())
+        await run.lower_flange(lower, world.flange_T_deck)
 
     run_simulated(world.start_s, world.advance, up_and_down)
     assert world.guard.trip is None
@@ -108,11 +108,11 @@ def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
 
 
 def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
-    world = MatingCell(9, stiffness_n_m=1e5, stop_latency_s=LATENCY_S)
+    world = MatingCell.drawn(9, stiffness_n_m=1e5, stop_latency_s=LATENCY_S)
     run, below = run_on(world), raised(world, -0.013)
 
     async def down() -> None:
-        await run.lower_flange(below, world.calibrated_deck())
+        await run.lower_flange(below, world.flange_T_deck)
 
     with pytest.raises(ForceLimitExceeded, match="Fz"):
         run_simulated(world.start_s, world.advance, down)
@@ -127,7 +127,7 @@ def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
 def test_a_joint_move_at_the_taught_speed_is_watched_and_its_inertia_allowed(
     free_force_n: float,
 ) -> None:
-    world = MatingCell(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    world = MatingCell.drawn(7, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
     cell = cell_of(world)
     sensor = cell.arm.sensor.model_copy(update={"free_force_n": free_force_n})
     home_rad = np.radians(cell.main_config.poses_deg["home"])

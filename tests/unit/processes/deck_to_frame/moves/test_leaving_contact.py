@@ -30,7 +30,7 @@ class Scene:
     """A deck that is pressed on its frame, zero taken at the stand-off, latches released."""
 
     def __init__(self, *, held: bool) -> None:
-        self.world = MatingCell(3, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+        self.world = MatingCell.drawn(3, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
         if held:
             self.world.world.faults.inject("held_dowel")
             self.world.world.rebuild()
