@@ -68,6 +68,10 @@ CATALOGUE: Mapping[str, Imperfection] = {
         "a motion, until the frame carries it",
         "assumed: a tenth of the loop's threshold",
     ),
+    "deck_flex": Imperfection(
+        0.02, "mm", "deck in the gripper: its corners hang lower than its middle by this",
+        "15 mm of aluminium with 100 kg/m², held 250 mm inside its edge: q L⁴/(8 D)",
+    ),
     "burr": Imperfection(
         0.02, "mm", "height of one burr somewhere under the rim of the deck",
         "edges without a burr as by ISO 13715: at most 0.02 to 0.05 mm",

@@ -3,6 +3,7 @@
 import numpy as np
 
 from fakes.faults import FaultBoard
+from fakes.scenes.deck_on_frame.flex import hang_m
 from fakes.scenes.deck_on_frame.parts import PartsTruth
 from fakes.scenes.deck_on_frame.pins import pin_faces
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
@@ -50,6 +51,7 @@ def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> Contac
         anchors = np.vstack([anchors, faces.anchors_m])
         pin_stiffness = np.full(len(faces.points_m), scenario.contact.pins.stiffness_n_m)
         stiffness = np.append(stiffness, pin_stiffness)
+    points[:, 2] -= hang_m(scenario, points[:, :2])
     half_size = np.array(scenario.parts.size_mm) / 2 * MM
     ahead = np.ones(len(points), dtype=bool)
     ahead[wedges[:, :2]] = False

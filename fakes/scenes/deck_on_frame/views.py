@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.scenes.deck_on_frame.boards import board_discs
+from fakes.scenes.deck_on_frame.flex import deck_T_tangent
 from fakes.scenes.deck_on_frame.parts import PartsTruth
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.frames import MM, stream_seed
@@ -35,6 +36,7 @@ def plates(
         pose = camera_T_cell * cell_T_deck
         if in_view(pose, size):
             thickness_m = scenario.parts.deck_thickness_mm * MM
+            pose = pose * deck_T_tangent(scenario, pose)
             yield ScenePlate("deck", pose, size, thickness_m, parts.deck_holes, parts.deck_seed)
 
 

@@ -32,7 +32,9 @@ async def go_on(_number: int, _total: int) -> None:
 
 
 def measured(latency_s: float) -> tuple[MatingCell, StopLatency]:
-    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=latency_s, imperfections=SAME_STOPS)
+    cell = MatingCell.drawn(
+        1, stiffness_n_m=1e6, stop_latency_s=latency_s, imperfections=SAME_STOPS
+    )
 
     async def run() -> StopLatency:
         return await measure_stop_latency(

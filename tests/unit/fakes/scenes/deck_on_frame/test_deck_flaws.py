@@ -4,7 +4,9 @@ from itertools import islice
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform, Rotation
 
+from fakes.scenes.deck_on_frame.flex import deck_T_tangent, hang_m
 from fakes.scenes.deck_on_frame.parts import draw_parts, grip_slips
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
@@ -71,3 +73,36 @@ def test_draws_of_the_parts_are_those_without_a_burr(scenario: DeckScenario) -> 
     burred = draw_parts(with_scales(scenario, burr=2.0), 3, 1)
     assert plain.frame_holes == burred.frame_holes
     assert plain.contact_stiffness_n_m == burred.contact_stiffness_n_m
+
+
+def test_each_head_sees_its_own_corner_of_a_bent_deck(scenario: DeckScenario) -> None:
+    bent = with_scales(scenario, deck_flex=5.0)  # 0.1 mm at the corners
+    for x_m, y_m in ((-0.48, -0.13), (0.48, 0.13), (0.0, 0.0)):
+        # 0.5 m above the place, looking down: x of the camera along x of the deck.
+        deck_T_camera = RigidTransform.from_components(
+            [x_m, y_m, 0.5], Rotation.from_euler("x", 180, degrees=True)
+        )
+        tangent = deck_T_tangent(bent, deck_T_camera.inv())
+        beside = np.array([[x_m, y_m], [x_m + 0.03, y_m], [x_m, y_m - 0.03]])
+        seen = tangent.apply(np.column_stack([beside, np.zeros(3)]))
+        np.testing.assert_allclose(-seen[:, 2], hang_m(bent, beside), atol=1e-6)
+        assert np.abs(seen[:, :2] - beside).max() < 0.05e-6
+    corner = hang_m(bent, np.array([[0.5, -0.25]]))
+    assert corner[0] == pytest.approx(0.1e-3)
+
+
+def test_a_flat_deck_is_seen_as_it_is(scenario: DeckScenario) -> None:
+    assert deck_T_tangent(scenario, RigidTransform.identity()).as_matrix() == pytest.approx(
+        np.eye(4)
+    )
+
+
+def test_the_corners_of_a_bent_deck_carry_first(scenario: DeckScenario) -> None:
+    bent = with_scales(scenario, deck_flex=1.0)
+    forces_n = []
+    for one in (scenario, bent):
+        world = hovering(DeckOnFrame(one, 1))
+        deck_to(world, above(world, 10e-6), 1e-3, 0.02)
+        forces_n.append(world.payload.contact_force_n)
+    assert forces_n[0] == 0.0
+    assert forces_n[1] > 0.5
