@@ -19,6 +19,9 @@ class PoseCorrection(Section):
     threshold_about_x_deg: Annotated[float, Field(gt=0, le=1)] | None = None
     """About x of the frame, which is known least where x is the line from head to head; None: as
     about the other axes."""
+    threshold_about_z_deg: Annotated[float, Field(gt=0, le=1)] | None = None
+    """About z of the frame. It shifts the pins of a long deck aside, and is known best of all; None:
+    as about y."""
     max_iterations: Annotated[int, Field(ge=1, le=50)] = 10
     max_correction_mm: Annotated[float, Field(gt=0, le=50)] = 10.0
     max_correction_deg: Annotated[float, Field(gt=0, le=10)] = 1.5
@@ -43,7 +46,8 @@ class PoseCorrection(Section):
     @property
     def thresholds_deg(self) -> tuple[float, float, float]:
         """About x, y and z of the frame."""
-        return _about_axes(self.threshold_deg, self.threshold_about_x_deg)
+        about_x_deg, about_z_deg = self.threshold_about_x_deg, self.threshold_about_z_deg
+        return _about_axes(self.threshold_deg, about_x_deg, about_z_deg)
 
 
 class Pins(Section):
@@ -156,5 +160,8 @@ class DeckRecipe(Recipe):
         }
 
 
-def _about_axes(deg: float, about_x_deg: float | None) -> tuple[float, float, float]:
-    return (deg if about_x_deg is None else about_x_deg, deg, deg)
+def _about_axes(
+    deg: float, about_x_deg: float | None, about_z_deg: float | None = None
+) -> tuple[float, float, float]:
+    about_x = deg if about_x_deg is None else about_x_deg
+    return (about_x, deg, deg if about_z_deg is None else about_z_deg)

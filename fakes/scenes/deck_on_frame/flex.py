@@ -1,4 +1,7 @@
-"""How a deck hangs through: its rim lies lower than its middle, where the gripper holds it."""
+"""How a deck hangs through: its rim lies lower than its middle, where the gripper holds it.
+
+The frame of the deck, as on the drawing, is that of its holes: their mean height is z = 0.
+"""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -8,9 +11,10 @@ from fakes.world.frames import MM, Array
 
 
 def hang_m(scenario: DeckScenario, places_m: Array) -> Array:
-    """How much lower than its middle the deck is at places x, y of it, shape (n, 2)."""
-    half_m = np.array(scenario.parts.size_mm) / 2 * MM
-    return np.asarray(_corner_m(scenario) * ((places_m / half_m) ** 2).mean(axis=1))
+    """How much lower than its holes the deck is at places x, y of it, shape (n, 2)."""
+    holes_m = np.array([hole.position_mm for hole in scenario.parts.holes]) * MM
+    shape = _shape(scenario, places_m) - _shape(scenario, holes_m).mean()
+    return np.asarray(_corner_m(scenario) * shape)
 
 
 def deck_T_tangent(scenario: DeckScenario, camera_T_deck: RigidTransform) -> RigidTransform:
@@ -28,6 +32,12 @@ def deck_T_tangent(scenario: DeckScenario, camera_T_deck: RigidTransform) -> Rig
     touched = np.array([*place_m, 0.0])
     lowered = touched - [0.0, 0.0, hang_m(scenario, place_m[np.newaxis])[0]]
     return RigidTransform.from_components(lowered - turn.apply(touched), turn)
+
+
+def _shape(scenario: DeckScenario, places_m: Array) -> Array:
+    """0 in the middle and 1 at the corners."""
+    half_m = np.array(scenario.parts.size_mm) / 2 * MM
+    return np.asarray(((places_m / half_m) ** 2).mean(axis=1))
 
 
 def _corner_m(scenario: DeckScenario) -> float:
