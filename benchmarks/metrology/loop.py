@@ -53,11 +53,10 @@ class Setting:
     """What all seeds share."""
 
     recipe: DeckRecipe
-    calibrations: CalibrationSet
+    base_T_c1: UncertainPose
     geometry: HeadGeometry
     frame: FeatureFile
     deck: FeatureFile
-    thresholds: Thresholds
 
     @classmethod
     def shipped(cls) -> "Setting":
@@ -67,22 +66,49 @@ class Setting:
         store = CalibrationStore(CONFIG / "demo-calibration", CALIBRATIONS)
         kinds = [kind.for_recipe(recipe.id) for kind in CALIBRATIONS]
         calibrations = CalibrationSet.of(store.read_all(kinds, utc_now() + timedelta(hours=1)))
-        about_x, about_y, about_z = np.radians(recipe.pose_correction.thresholds_deg).tolist()
         return cls(
             recipe,
-            calibrations,
+            calibrations.base_T_c1,
             HeadGeometry.of(calibrations, recipe.pose_correction),
             read_features(CONFIG / recipe.frame_features),
             read_features(CONFIG / recipe.deck_features),
-            Thresholds(recipe.pose_correction.threshold_mm * MM, (about_x, about_y, about_z)),
         )
+
+    @property
+    def thresholds(self) -> Thresholds:
+        """Those of the recipe."""
+        settings = self.recipe.pose_correction
+        about_x, about_y, about_z = np.radians(settings.thresholds_deg).tolist()
+        return Thresholds(settings.threshold_mm * MM, (about_x, about_y, about_z))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LoopEnd:
+    """A deck at its stand-off after the loop, and what is known of it."""
+
+    station: FakeStation
+    M_T_D: UncertainPose
+    flange_T_deck: RigidTransform
+    converged: bool
+    looks: tuple[dict[str, list[float]], ...]
 
 
 def run_loop(setting: Setting, scenario: DeckScenario, seed: int) -> dict[str, Any]:
     """Errors that each look found, what was true, and how sure it was; mm and degrees."""
+    end = follow_loop(setting, scenario, seed)
+    return {
+        "seed": seed,
+        "converged": end.converged,
+        "errors_mm_deg": [look["error_mm_deg"] for look in end.looks],
+        "looks": end.looks,
+    }
+
+
+def follow_loop(setting: Setting, scenario: DeckScenario, seed: int) -> LoopEnd:
+    """Draw a cell and bring its deck to the stand-off; raises the faults of the vision."""
     recipe, settings = setting.recipe, setting.recipe.pose_correction
     station = FakeStation(scenario, seed, setting.geometry)
-    base_T_c1 = setting.calibrations.base_T_c1
+    base_T_c1 = setting.base_T_c1
     target = target_M_T_D(recipe.deck_thickness_mm * MM, recipe.stand_off_mm * MM)
 
     nominal = base_T_c1.pose.inv() * pose_from_xyzabc(recipe.base_T_frame)
@@ -106,12 +132,7 @@ def run_loop(setting: Setting, scenario: DeckScenario, seed: int) -> dict[str, A
         if judgement.converged:
             break
         commanded = next_target(commanded, target, M_T_D.pose)
-    return {
-        "seed": seed,
-        "converged": judgement.converged,
-        "errors_mm_deg": [look["error_mm_deg"] for look in looks],
-        "looks": looks,
-    }
+    return LoopEnd(station, M_T_D, flange_T_deck, judgement.converged, tuple(looks))
 
 
 def _look(
