@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
@@ -67,6 +67,10 @@ campaign-faults: venv
 # Takes an hour and more; interrupted, it goes on where it was.
 campaign-tornado: venv
 	$(BIN)/python -m benchmarks.tornado
+
+# Takes an hour and more; interrupted, it goes on where it was.
+campaign-decks: venv
+	$(BIN)/python -m benchmarks.decks
 
 # Takes half an hour; QUICK=1 draws few cells and insertions, in a few minutes each.
 campaign-antenna: venv

@@ -4,15 +4,17 @@ There is no wire and no clock: the mating is that of `benchmarks.mating`, but it
 deck where the loop has left it, and with the pose and the uncertainty that the loop has found.
 """
 
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
 from benchmarks.decks.deck_range import Deck, payload_kg, scenario_of, setting_of
-from benchmarks.metrology.loop import LoopEnd, Setting, follow_loop
+from benchmarks.metrology.fake_station import SCENARIO
+from benchmarks.metrology.loop import CONFIG, Setting, follow_loop
 from cellctl.config.devices import ForceSensorConfig
+from cellctl.config.load import load_cell
 from cellctl.errors.base import CellError
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
@@ -20,6 +22,7 @@ from cellctl.processes.deck_to_frame.mating.mate import mate
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
 from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from tests.rigs.mating.cell import MatingCell
@@ -27,6 +30,8 @@ from tests.rigs.mating.simulated_loop import run_simulated
 
 PIN_LIMIT_MM = 0.2
 FORCE_LIMIT_N = 50.0
+GAP_LIMIT_MM = 0.1
+"""Between the middles of the faces."""
 
 
 class Outcome(StrEnum):
@@ -47,95 +52,101 @@ class Figures:
     outcome: Outcome
     text: str = ""
     looks: int | None = None
-    off_about_weak_deg: float | None = None
-    """Error of the last look: the worst of the rotations about x and y."""
+    off_tilt_deg: float | None = None
+    """Error of the last look: the worse one of the rotations about x and y."""
     normalised_squared: float | None = None
     speed_mm_s: float | None = None
     lateral_mm: float | None = None
     """The worst pin hole."""
     gap_mm: float | None = None
     peak_n: float | None = None
-    final_n: float | None = None
+    held_n: float | None = None
+
+    @property
+    def beyond(self) -> bool:
+        """Beyond what a good part may have."""
+        return not (
+            (self.lateral_mm or 0.0) <= PIN_LIMIT_MM
+            and abs(self.gap_mm or 0.0) <= GAP_LIMIT_MM
+            and (self.peak_n or 0.0) < FORCE_LIMIT_N
+        )
 
     def row(self) -> dict[str, Any]:
         """Plain data."""
         return asdict(self)
 
 
-def run_chain(
-    deck: Deck,
-    shipped: Setting,
-    sensor: ForceSensorConfig,
-    commissioned: Commissioned,
-    scenario: DeckScenario,
-    seed: int,
-) -> Figures:
+@dataclass(frozen=True, slots=True, eq=False)
+class Shipped:
+    """The demonstration's cell, of which every deck gets a variant."""
+
+    setting: Setting
+    sensor: ForceSensorConfig
+    scenario: DeckScenario
+
+    @classmethod
+    def read(cls) -> Self:
+        """From config/."""
+        sensor = load_cell(CONFIG / "deck.toml").force_sensors["force"]
+        return cls(Setting.shipped(), sensor, DeckScenario.read(SCENARIO))
+
+
+def run_chain(deck: Deck, shipped: Shipped, seed: int) -> Figures:
     """Draw a cell for the deck and assemble it."""
-    setting = setting_of(deck, shipped)
+    setting = setting_of(deck, shipped.setting)
     try:
-        end = follow_loop(setting, scenario_of(deck, scenario), seed)
+        end = follow_loop(setting, scenario_of(deck, shipped.scenario), seed)
     except CellError as fault:
         return Figures(deck.key, seed, Outcome.REFUSED, str(fault))
-    known = _known(end)
-    if not end.converged:
-        return Figures(deck.key, seed, Outcome.REFUSED, "the loop does not converge", **known)
-    return _mated(deck, seed, end, setting.recipe, sensor, commissioned, known)
-
-
-def _known(end: LoopEnd) -> dict[str, Any]:
     last = end.looks[-1]
-    return {
-        "looks": len(end.looks),
-        "off_about_weak_deg": float(np.abs(last["off_truth_mm_deg"][3:5]).max()),
-        "normalised_squared": last["normalised_squared"][0],
-    }
-
-
-def _mated(  # noqa: PLR0917  # all that a mating needs
-    deck: Deck,
-    seed: int,
-    end: LoopEnd,
-    recipe: DeckRecipe,
-    sensor: ForceSensorConfig,
-    commissioned: Commissioned,
-    known: dict[str, Any],
-) -> Figures:
-    world = end.station.world
+    known = Figures(
+        deck.key,
+        seed,
+        Outcome.REFUSED,
+        "the loop does not converge",
+        looks=len(end.looks),
+        off_tilt_deg=float(np.abs(last["off_truth_mm_deg"][3:5]).max()),
+        normalised_squared=last["normalised_squared"][0],
+    )
+    if not end.converged:
+        return known
     cell = MatingCell(
-        world,
+        end.station.world,
         np.random.default_rng([seed, 78]),
         M_T_D=end.M_T_D,
         flange_T_deck=end.flange_T_deck,
     )
-    world.payload.peak_contact_force_n = 0.0
+    # Nothing was commissioned: the recipe's bounds count, as on a new cell.
+    settings = mating_settings(shipped.sensor, setting.recipe, Commissioned(), payload_kg(deck))
+    return _mated(cell, setting.recipe, settings, known)
+
+
+def _mated(
+    cell: MatingCell, recipe: DeckRecipe, settings: MatingSettings, known: Figures
+) -> Figures:
+    payload = cell.world.payload
+    payload.peak_contact_force_n = 0.0
     try:
-        plan = _plan(cell, recipe, sensor, commissioned, payload_kg(deck))
-        known["speed_mm_s"] = plan.speed.speed_m_s / MM
+        plan = _plan(cell, recipe, settings)
+        known = replace(known, speed_mm_s=plan.speed.speed_m_s / MM)
         result, held_n = _run(cell, plan)
     except CellError as fault:
-        known["peak_n"] = world.payload.peak_contact_force_n
-        return Figures(deck.key, seed, Outcome.REFUSED, str(fault), **known)
-    truth = world.truth_report()
-    known |= {
-        "lateral_mm": max(pin["offset_mm"] for pin in truth["pins"].values()),
-        "gap_mm": truth["frame_T_deck_mm_deg"][2] - truth["deck_thickness_mm"],
-        "peak_n": world.payload.peak_contact_force_n,
-        "final_n": held_n,
-    }
+        return replace(known, text=str(fault), peak_n=payload.peak_contact_force_n)
+    truth = cell.world.truth_report()
+    known = replace(
+        known,
+        lateral_mm=max(pin["offset_mm"] for pin in truth["pins"].values()),
+        gap_mm=truth["frame_T_deck_mm_deg"][2] - truth["deck_thickness_mm"],
+        peak_n=payload.peak_contact_force_n,
+        held_n=held_n,
+        text=", ".join(finding.value for finding in result.verdict.findings),
+    )
     if not result.verdict.seated:
-        text = ", ".join(finding.value for finding in result.verdict.findings)
-        return Figures(deck.key, seed, Outcome.REFUSED, text, **known)
-    good = known["lateral_mm"] <= PIN_LIMIT_MM and known["peak_n"] < FORCE_LIMIT_N
-    return Figures(deck.key, seed, Outcome.GOOD if good else Outcome.FALSE, **known)
+        return known
+    return replace(known, outcome=Outcome.FALSE if known.beyond else Outcome.GOOD)
 
 
-def _plan(
-    cell: MatingCell,
-    recipe: DeckRecipe,
-    sensor: ForceSensorConfig,
-    commissioned: Commissioned,
-    mass_kg: float,
-) -> MatingPlan:
+def _plan(cell: MatingCell, recipe: DeckRecipe, settings: MatingSettings) -> MatingPlan:
     """As the process plans it, from the pose that the loop has measured last."""
     return plan_mating(
         base_T_flange=cell.arm.encoder_pose(cell.world.time_s),
@@ -144,7 +155,7 @@ def _plan(
         M_T_D=cell.M_T_D,
         deck_thickness_m=recipe.deck_thickness_mm * MM,
         over_travel_m=recipe.over_travel_mm * MM,
-        settings=mating_settings(sensor, recipe, commissioned, mass_kg),
+        settings=settings,
     )
 
 

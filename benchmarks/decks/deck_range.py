@@ -8,10 +8,12 @@ from scipy.spatial.transform import RigidTransform
 
 from benchmarks.metrology.loop import Setting
 from cellctl.geometry.pose import MM
-from cellctl.geometry.uncertain import UncertainPose
+from cellctl.geometry.uncertain import UncertainPose, skew
+from cellctl.processes.deck_to_frame.checks.plausible.face import face_issues
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile
+from fakes.scenario_file.sections import Spread
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.frames import Array
 
@@ -111,7 +113,14 @@ def scenario_of(deck: Deck, shipped: DeckScenario) -> DeckScenario:
     )
     return shipped.model_copy(
         update={
-            "parts": parts.model_copy(update={"size_mm": tuple(deck.face_mm), "holes": holes}),
+            "parts": parts.model_copy(
+                update={
+                    "size_mm": tuple(deck.face_mm),
+                    "holes": holes,
+                    "frame_displacement": _located(deck, parts.frame_displacement),
+                    "grip": _located(deck, parts.grip),
+                }
+            ),
             "payload": payload,
             "force_sensors": {
                 name: sensor.model_copy(update=_larger(sensor.model_dump(), mass_kg))
@@ -135,9 +144,7 @@ def setting_of(deck: Deck, shipped: Setting) -> Setting:
     """Recipe, drawings and calibrations for a deck; the heads are calibrated as well as shipped."""
     base_T_c1 = _shift(deck, "aux_1") * shipped.base_T_c1
     base_T_c2 = _shift(deck, "aux_2") * (shipped.base_T_c1 * shipped.geometry.c1_T_c2)
-    c1_T_c2 = UncertainPose(
-        base_T_c1.pose.inv() * base_T_c2.pose, shipped.geometry.c1_T_c2.covariance
-    )
+    c1_T_c2 = _farther_apart(deck, base_T_c1, base_T_c2.pose, shipped.geometry.c1_T_c2)
     return Setting(
         recipe_of(deck, shipped.recipe),
         base_T_c1,
@@ -186,9 +193,22 @@ def recipe_of(deck: Deck, shipped: DeckRecipe) -> DeckRecipe:
     )
 
 
+def refusals(deck: Deck, shipped: Setting) -> list[str]:
+    """What `cellctl check` says to the recipe of a deck."""
+    recipe = recipe_of(deck, shipped.recipe)
+    return [str(issue) for issue in face_issues(recipe, "recipe", _drawing(deck, shipped.deck))]
+
+
 def payload_kg(deck: Deck) -> float:
     """Everything that hangs on the sensor."""
     return GRIPPER_KG + deck.mass_kg
+
+
+def _located(deck: Deck, shipped: Spread) -> Spread:
+    """Its corners are located and gripped as exactly as those of the shipped deck."""
+    ratio = float(np.hypot(*SHIPPED_FACE_MM)) * MM / 2 / deck.half_diagonal_m
+    turned = tuple(angle * ratio for angle in shipped.rotation_deg)
+    return shipped.model_copy(update={"rotation_deg": turned})
 
 
 def _larger(sensor: dict[str, object], mass_kg: float) -> dict[str, float]:
@@ -209,6 +229,18 @@ def _drawing(deck: Deck, shipped: FeatureFile) -> FeatureFile:
         for hole in shipped.holes
     )
     return replace(shipped, holes=holes)
+
+
+def _farther_apart(
+    deck: Deck, base_T_c1: UncertainPose, base_T_c2: RigidTransform, shipped: UncertainPose
+) -> UncertainPose:
+    """C1_T_C2 of heads that stand farther apart: how head I stands is known no better than before,
+    and now has a longer lever."""
+    apart_m = (_shift_mm(deck, "aux_2") - _shift_mm(deck, "aux_1")) * MM
+    lever = skew(base_T_c1.pose.rotation.inv().apply(apart_m))
+    covariance = shipped.covariance.copy()
+    covariance[:3, :3] += lever @ base_T_c1.covariance[3:, 3:] @ lever.T
+    return UncertainPose(base_T_c1.pose.inv() * base_T_c2, covariance)
 
 
 def _shift(deck: Deck, robot: str) -> UncertainPose:

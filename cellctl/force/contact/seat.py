@@ -13,6 +13,8 @@ from cellctl.geometry.pose import Array
 
 EDGE_MARGIN_N_M = 2.75, 1.5
 """Allowance for tare, friction and the lever of the side force in the moments about x and y."""
+SEAT_DEPTH_M = 1e-4
+"""A part that stands higher than this above its seat, or lies deeper, is not seated."""
 REST_RATIO = 0.8
 """A seated part may keep this share of the side load that is allowed on the way."""
 
@@ -37,7 +39,7 @@ class SeatLimits:
     lateral_n: float
     moment_n_m: tuple[float, float, float]
     """About x, y and z of the part."""
-    depth_m: float = 1e-4
+    depth_m: float = SEAT_DEPTH_M
     """Greatest distance between reached and expected depth, without elastic travel."""
 
 

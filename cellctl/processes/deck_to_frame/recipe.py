@@ -20,8 +20,8 @@ class PoseCorrection(Section):
     """About x of the frame, which is known least where x is the line from head to head; None: as
     about the other axes."""
     threshold_about_z_deg: Annotated[float, Field(gt=0, le=1)] | None = None
-    """About z of the frame. It shifts the pins of a long deck aside, and is known best of all; None:
-    as about y."""
+    """About z of the frame, which is known best of all, and shifts the pins of a long deck aside;
+    None: as about y."""
     max_iterations: Annotated[int, Field(ge=1, le=50)] = 10
     max_correction_mm: Annotated[float, Field(gt=0, le=50)] = 10.0
     max_correction_deg: Annotated[float, Field(gt=0, le=10)] = 1.5

@@ -15,17 +15,19 @@ from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.plan import plan_mating
 from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import FORCE
+from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
 
 ASSUMED_PAYLOAD_KG = 200.0
-"""No payload is identified yet; heavier ones are judged again with the deck at the stand-off."""
+"""Where the cell file states no load. The identified payload is judged again at the stand-off."""
 
 
 def plan_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
     """An issue for a recipe from which no mating can be planned, even with exact measurements."""
     sensor = cell.force_sensors[recipe.device(FORCE)]
+    load = cell.robots[recipe.device(MAIN)].load
+    payload_kg = ASSUMED_PAYLOAD_KG if load is None else load.mass_kg - load.not_weighed_kg
     try:
-        _plan_at_the_stand_off(sensor, recipe)
+        _plan_at_the_stand_off(sensor, recipe, payload_kg)
     except UnknownDriver:
         return  # reported by itself; without its driver the rate of the sensor is not known
     except ContactPlanInvalid as error:
@@ -33,7 +35,9 @@ def plan_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Conf
         yield ConfigIssue(f"{key}.mating", value, error.detail, error.number)
 
 
-def _plan_at_the_stand_off(sensor: ForceSensorConfig, recipe: DeckRecipe) -> None:
+def _plan_at_the_stand_off(
+    sensor: ForceSensorConfig, recipe: DeckRecipe, payload_kg: float
+) -> None:
     stand_off_m = (recipe.deck_thickness_mm + recipe.stand_off_mm) * MM
     plan_mating(
         base_T_flange=RigidTransform.identity(),
@@ -42,5 +46,5 @@ def _plan_at_the_stand_off(sensor: ForceSensorConfig, recipe: DeckRecipe) -> Non
         M_T_D=UncertainPose.exact(RigidTransform.from_translation([0.0, 0.0, stand_off_m])),
         deck_thickness_m=recipe.deck_thickness_mm * MM,
         over_travel_m=recipe.over_travel_mm * MM,
-        settings=mating_settings(sensor, recipe, Commissioned(), ASSUMED_PAYLOAD_KG),
+        settings=mating_settings(sensor, recipe, Commissioned(), payload_kg),
     )

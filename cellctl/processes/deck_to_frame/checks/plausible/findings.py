@@ -9,6 +9,7 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
 from cellctl.processes.deck_to_frame.checks.plausible.drawings import drawing_issues
+from cellctl.processes.deck_to_frame.checks.plausible.face import face_issues
 from cellctl.processes.deck_to_frame.checks.plausible.limits import limit_issues
 from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
 from cellctl.processes.deck_to_frame.checks.plausible.station import station_issues
@@ -36,6 +37,7 @@ def plausible_issues(
     yield from _thresholds(recipe, key)
     yield from _thickness(recipe, key, folder)
     yield from limit_issues(recipe, key)
+    yield from face_issues(recipe, key, read_features(folder / recipe.deck_features))
     loads = list(load_issues(cell, recipe, key))
     yield from loads
     yield from station_issues(cell, recipe, key)

@@ -1,0 +1,87 @@
+"""The campaign: `python -m benchmarks.decks`.
+
+Exit codes: 0 no deck was called good that is not, 1 one was, 130 interrupted.
+"""
+
+import json
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from itertools import product
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Annotated, Any
+
+import cv2
+import typer
+from rich.console import Console
+
+from benchmarks.decks.chain import Figures, Outcome, Shipped, run_chain
+from benchmarks.decks.deck_range import DECKS, LARGE_LEGS_MM, SHIPPED_LEGS_MM, Deck, refusals
+from benchmarks.decks.table import markdown
+
+INTERRUPTED = 130
+
+
+def campaign(
+    n: Annotated[int, typer.Option("-n", min=1, help="Seeds of every deck.")] = 3,
+    out: Annotated[Path, typer.Option(help="Folder for figures and table.")] = Path("runs/decks"),
+    workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
+) -> None:
+    """Assemble every deck of the range; what was run before in the same folder is not run again."""
+    console = Console(highlight=False, soft_wrap=True)
+    out.mkdir(parents=True, exist_ok=True)
+    file = out / "decks.json"
+    rows: dict[str, dict[str, Any]] = (
+        json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
+    )
+    decks = tuple(
+        replace(deck, legs_mm=legs)
+        for deck, legs in product(DECKS, (SHIPPED_LEGS_MM, LARGE_LEGS_MM))
+    )
+    waiting = [
+        (deck, seed)
+        for seed, deck in product(range(1, n + 1), decks)
+        if f"{deck.key}/{seed}" not in rows
+    ]
+    code = 0
+    pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_one_thread)
+    try:
+        for done, figures in enumerate(pool.map(_run, waiting), start=1):
+            rows[f"{figures.deck}/{figures.seed}"] = figures.row()
+            file.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
+            console.print(f"{done} of {len(waiting)}: {_told(figures)}")
+    except KeyboardInterrupt:
+        console.print("interrupted; the same command goes on from here", style="bold")
+        code = INTERRUPTED
+    finally:
+        pool.shutdown(cancel_futures=True)
+    shipped = Shipped.read()
+    refused = {deck.key: refusals(deck, shipped.setting) for deck in decks}
+    text = markdown(decks, [Figures(**row) for row in rows.values()], refused)
+    (out / "decks.md").write_text(text, encoding="utf-8")
+    console.print(text)
+    false = any(row["outcome"] == Outcome.FALSE for row in rows.values())
+    raise typer.Exit(code or int(false))
+
+
+def _one_thread() -> None:
+    cv2.setNumThreads(1)
+
+
+def _run(case: tuple[Deck, int]) -> Figures:
+    return run_chain(case[0], Shipped.read(), case[1])
+
+
+def _told(figures: Figures) -> str:
+    known: Sequence[str] = [
+        f"{name} {value:.3f}"
+        for name, value in figures.row().items()
+        if isinstance(value, float) and name.endswith(("mm", "_n", "deg"))
+    ]
+    text = f" ({figures.text})" if figures.text else ""
+    return f"{figures.deck}, seed {figures.seed}: {figures.outcome}{text}; {', '.join(known)}"
+
+
+if __name__ == "__main__":
+    typer.run(campaign)
