@@ -22,7 +22,7 @@ def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) ->
     """
     scene = open_scene(cell_file, model)
     # The libraries of planning may be missing, which opening the scene says.
-    from cellctl.planning.output import write_output
+    from cellctl.calibration.output_file import write_file
     from cellctl.planning.views.gains import gains
     from cellctl.planning.views.plan_viewpoints import ViewpointPlan, stated_measurements
     from cellctl.planning.views.view_text import gain_line, views_lines
@@ -42,5 +42,5 @@ def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) ->
         raise NoViewsStated(f"{cell_file}")
     if out is not None:
         text = cell_file.read_text(encoding="utf-8")
-        write_output(out, with_viewpoints_written(text, planned).encode())
+        write_file(out, with_viewpoints_written(text, planned).encode())
         console.print(f"written: {out}; read it, try each pose at low speed, and calibrate there")
