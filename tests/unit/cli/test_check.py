@@ -1,5 +1,6 @@
 """`cellctl check`: what a good cell file lacks for processes that have no recipe in it."""
 
+import json
 from pathlib import Path
 
 import pytest
@@ -69,3 +70,22 @@ def test_a_data_folder_that_may_not_be_written_is_a_hint(
     assert done.exit_code == 0, done.output
     assert "data_dir runs/cell: this user may not write it" in done.output
     assert "calibration_dir" not in done.output
+
+
+def test_every_move_is_held_against_the_model_beside_the_file(tmp_path: Path) -> None:
+    cell_file = written(tmp_path, "insertion-pin.toml")
+    done = CliRunner().invoke(whole_app(), ["check", "--moves", str(cell_file)])
+    assert done.exit_code == 0, done.output
+    assert "every move is free, by the model" in done.stdout
+    # The part beside its place, on the way of the arm.
+    model = tmp_path / "insertion-pin.model.toml"
+    text = model.read_text(encoding="utf-8")
+    model.unlink()
+    model.write_text(text.replace("[500.0, -200.0, 100.0,", "[400.0, -200.0, 240.0,"))
+    done = CliRunner().invoke(whole_app(), ["check", "--moves", "--json", str(cell_file)])
+    assert done.exit_code == 1
+    found = json.loads(done.stdout)
+    assert not found["good"]
+    assert any(
+        "arm.gripper and part" in text or "arm.pin and part" in text for text in found["moves"]
+    )
