@@ -22,7 +22,7 @@ COMMAND = "cellctl.command"
 CALIBRATE = "cellctl.calibrate"
 """The same below `cellctl calibrate`."""
 INSERTION_JUDGE = "cellctl.insertion_judge"
-"""Functions that judge a recorded insertion (``cellctl.force.judged_insertion``)."""
+"""Functions that judge a recorded insertion (``cellctl.calibration.judged_insertion``)."""
 WITH_FAULTS = (
     ROBOT,
     STOP_CHANNEL,

@@ -39,7 +39,7 @@ _FENCE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 _INLINE = re.compile(r"`([^`\n]+)`")
 _PATH = re.compile(r"(?:cellctl|drivers|fakes|benchmarks|tests|systemd)/[\w./-]+")
 _PROGRAMS = ("make ", "cellctl ", "python -m ", ".venv/bin/")
-_SETTING = re.compile(r"[A-Z]+=\S+")
+_SETTING = re.compile(r"[A-Z]+=.+")
 
 
 @dataclass(frozen=True)

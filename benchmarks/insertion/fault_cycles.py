@@ -6,11 +6,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from benchmarks.insertion.contact_world import Array, Injected, SensorFault
+from benchmarks.insertion.contact_world import Injected, SensorFault
 from benchmarks.insertion.cycles import CycleCell, CycleInjection
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from fakes.scenes.socket.part import draw_part, nominal_fit
-from fakes.world.frames import displacement
+from fakes.world.frames import Array, displacement
 from fakes.world.peg.fit import Burr, Fit
 
 _FORCE_SIGMA = np.array([0.1, 0.1, 0.1, 0.003, 0.003, 0.003])

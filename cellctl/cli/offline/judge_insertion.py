@@ -11,8 +11,8 @@ from typing import Annotated, cast
 import typer
 
 from cellctl import plugins
+from cellctl.calibration.judged_insertion import InsertionJudge, JudgedInsertion
 from cellctl.calibration.output_file import write_file
-from cellctl.force.judged_insertion import InsertionJudge, JudgedInsertion
 
 NOT_GOOD = 3
 BY_CONNECTOR, BY_TASK = "connector", "task"

@@ -19,7 +19,7 @@ class MetricsKeeper:
 
     def __init__(self, hub: Hub, streams: Streams, data_dir: Path) -> None:
         # Else each counter would have a second series with the time of its begin.
-        disable_created_metrics()
+        disable_created_metrics()  # type: ignore[no-untyped-call]  # of the library
         self._hub = hub
         self._registry = CollectorRegistry()
         self._history = CellHistory(self._registry)

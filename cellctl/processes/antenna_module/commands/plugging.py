@@ -13,10 +13,10 @@ import typer
 
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.input_file import read_input
+from cellctl.calibration.judged_insertion import JudgedInsertion
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.config import FileInvalid
-from cellctl.force.judged_insertion import JudgedInsertion
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme

@@ -4,7 +4,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from cellctl.force.judged_insertion import JudgedInsertion
+from cellctl.calibration.judged_insertion import JudgedInsertion
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve, read_curve
 from cellctl.processes.peg_in_hole.offline.evidence import evidence_of

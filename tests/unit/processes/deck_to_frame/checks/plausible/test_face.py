@@ -10,6 +10,7 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import load_cell
 from cellctl.processes.deck_to_frame.checks import mating_plan
 from cellctl.processes.deck_to_frame.checks.plausible.face import face_issues
+from cellctl.processes.deck_to_frame.mating import planned_settings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import read_features
 
@@ -73,7 +74,7 @@ def test_a_moment_that_the_first_touch_of_a_corner_exceeds() -> None:
 def test_heavier_loads_are_planned_with_their_own_mass(monkeypatch: pytest.MonkeyPatch) -> None:
 
     planned_kg: list[float] = []
-    original = mating_plan.mating_settings
+    original = planned_settings.mating_settings
 
     def settings(*arguments: Any) -> Any:
         planned_kg.append(arguments[-1])
