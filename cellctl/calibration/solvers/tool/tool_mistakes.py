@@ -7,7 +7,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.solvers.tool.tool import ToolResult, calibrate_tool
 from cellctl.errors import CellError
-from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
 
 _LEAST_WITHOUT = 5
 """Touches of which one may be left out: four are needed, and four may fit by luck."""
@@ -23,9 +23,13 @@ def tool_mistakes(
 ) -> tuple[str, ...]:
     """What is probably wrong with the poses, as warnings; empty for good ones."""
     said = []
-    if not result.passed and (hint := _explanation(touching)):
-        said.append(hint)
     tip_m = np.asarray(result.flange_T_tool.pose.translation)
+    if result.passed and _is_inverted(touching, tip_m):
+        said.append(
+            "the poses are inverted (flange_T_base)? The tool would be longer than its reach"
+        )
+    elif not result.passed and (hint := _explanation(touching)):
+        said.append(hint)
     if np.linalg.norm(tip_m) > _LONGEST_M:
         said.append(f"the tip is {np.linalg.norm(tip_m) / MM:.0f} mm from the flange")
     z_axis = result.flange_T_tool.pose.rotation.as_matrix()[:, 2]
@@ -37,14 +41,19 @@ def tool_mistakes(
     return tuple(said)
 
 
+def _is_inverted(touching: Sequence[RigidTransform], tip_m: Array) -> bool:
+    """Whether tip and touched point have changed places.
+
+    Inverted poses meet in a point as well, so that no residual shows them: the place of the point
+    in the base is taken for that of the tip on the flange.
+    """
+    point = calibrate_tool([pose.inv() for pose in touching]).flange_T_tool.pose.translation
+    return bool(np.linalg.norm(tip_m) > np.linalg.norm(point))
+
+
 def _explanation(touching: Sequence[RigidTransform]) -> str:
-    tried = {
-        "the poses are inverted (flange_T_base)": [pose.inv() for pose in touching],
-        "the angles of the poses are in radians": [_from_radians(pose) for pose in touching],
-    }
-    for words, changed in tried.items():
-        if _passes(changed):
-            return f"{words}? Then the touches meet in one point"
+    if _passes([_from_radians(pose) for pose in touching]):
+        return "the angles of the poses are in radians? Then the touches meet in one point"
     if len(touching) >= _LEAST_WITHOUT:
         alone = [
             number

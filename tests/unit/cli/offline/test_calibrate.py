@@ -269,6 +269,15 @@ def test_touches_that_do_not_fit_are_named(tmp_path: Path) -> None:
     assert "touching, entry 3 does not fit the others" in result.output
 
 
+def test_inverted_poses_of_a_tool_are_named(tmp_path: Path) -> None:
+    """They meet in one point as well as good ones: no residual shows them."""
+    touching = tool_case.touching(np.random.default_rng(0), 6, 5e-5)
+    data = {"touching": [written(pose.inv()) for pose in touching]}
+    result = call("tool", "--in", save(tmp_path / "tool.json", data))
+    assert "the poses are inverted (flange_T_base)?" in result.output
+    assert "inverted" not in call("tool", "--in", save(tmp_path / "t.json", tool_data())).output
+
+
 def test_orienting_poses_in_the_other_order_are_named(tmp_path: Path) -> None:
     data = tool_data()
     data["orienting"] = [data["orienting"][index] for index in (0, 2, 1)]
