@@ -10,6 +10,7 @@ from benchmarks.metrology.loop import Setting
 from cellctl.geometry.pose import MM
 from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.processes.deck_to_frame.checks.plausible.face import face_issues
+from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile
@@ -186,7 +187,11 @@ def recipe_of(deck: Deck, shipped: DeckRecipe) -> DeckRecipe:
                     "max_moment_n_m": max(
                         mating.max_moment_n_m,
                         1.2 * mating.target_force_n * deck.half_diagonal_m,
-                    )
+                    ),
+                    # A heavy load begins to move slowly, so that it is not taken for a contact.
+                    "acceleration_mm_s2": min(
+                        mating.acceleration_mm_s2, 0.7 * FAST_LIMIT_N / 2 / payload_kg(deck) * 1e3
+                    ),
                 }
             ),
         }

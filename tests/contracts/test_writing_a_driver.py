@@ -79,7 +79,8 @@ def test_every_interface_is_listed() -> None:
     text = GUIDE.read_text(encoding="utf-8")
     groups = re.findall(r'^\[project\.entry-points\."(cellctl\.\w+)"\]', _pyproject(), re.MULTILINE)
     missing = {group for group in groups if f"| `{group}` |" not in text}
-    assert missing == {"cellctl.process", "cellctl.command", "cellctl.calibrate"}
+    of_processes = ("process", "command", "calibrate", "insertion_judge")
+    assert missing == {f"cellctl.{group}" for group in of_processes}
 
 
 def _pyproject() -> str:

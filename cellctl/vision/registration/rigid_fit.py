@@ -68,12 +68,13 @@ def by_pose(turned_m: Array) -> Array:
     return np.concatenate([eye, -skews(turned_m)], axis=2)
 
 
-def on_a_line(points_m: Array) -> bool:
-    """Whether points, shape (n, 3), fail to span a plane."""
+def on_a_line(points_m: Array, ratio: float = 0.01) -> bool:
+    """Whether points, shape (n, 3), fail to span a plane: their spread across is less than
+    ``ratio`` of that along."""
     if len(points_m) < 3:
         return True
     spread = np.linalg.svd(points_m - points_m.mean(axis=0), compute_uv=False)
     # A deck of 5 m that is seen at two corners has 0.03: the turn about the line between them is
     # known worst, and its covariance says so. Below 0.01 it would be known a hundred times worse
     # than that across the line, and a hole that is off its drawing would decide it.
-    return bool(spread[1] < 0.01 * spread[0])
+    return bool(spread[1] < ratio * spread[0])

@@ -7,6 +7,9 @@ import numpy as np
 from cellctl.force.contact.seat import SeatLimits, seat_limits
 from cellctl.force.contact.touch_detector import Cusum
 
+FAST_LIMIT_N = 20.0
+"""Filtered force at which the fast travel takes itself for a contact."""
+
 
 @dataclass(frozen=True, slots=True)
 class PinSettings:
@@ -66,7 +69,7 @@ class MatingSettings:
 
     fast_speed_m_s: float = 5e-3
     acceleration_m_s2: float = 0.02
-    fast_limit_n: float = 20.0
+    fast_limit_n: float = FAST_LIMIT_N
     """Filtered force that ends the fast travel: inertia at ``acceleration_m_s2`` and no more."""
     greatest_past_m: float = 5e-4
     """No commanded target lies further past the expected contact."""

@@ -5,12 +5,15 @@ from collections.abc import Iterator
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.issue import ConfigIssue
+from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import MAIN
 
 _MOST_SAG_MM = 10.0
 """Of an arm under its load. The same as a lowest natural frequency of 5 Hz, sqrt(g / sag) / 2 pi,
 which every industrial arm exceeds with its rated load."""
+_SWINGS_TO = 2.0
+"""Times the force of a steady acceleration: a load on a spring that is suddenly accelerated."""
 _MOST_LEFT = 0.2
 """Of the weight: what gravity compensation may leave, of which 4 % is usual."""
 
@@ -33,6 +36,16 @@ def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Conf
                 f"{load.mass_kg:g} kg robots.{robot} would sag by {weight_n / stiffness:.0f} mm"
             )
             yield ConfigIssue(f"{key}.mating.{name}", f"{stiffness:g}", allowed)
+    weighed_kg = load.mass_kg - load.not_weighed_kg
+    most_mm_s2 = FAST_LIMIT_N / _SWINGS_TO / weighed_kg * 1e3
+    if mating.acceleration_mm_s2 > most_mm_s2:
+        allowed = (
+            f"at most {most_mm_s2:.0f}: {weighed_kg:.0f} kg that begin to move swing to twice the "
+            f"force of their acceleration, and {FAST_LIMIT_N:g} N end the fast travel as a contact "
+            "that came too early (F522)"
+        )
+        value = f"{mating.acceleration_mm_s2:g}"
+        yield ConfigIssue(f"{key}.mating.acceleration_mm_s2", value, allowed)
     if mating.max_untared_force_n > _MOST_LEFT * weight_n:
         left_n = mating.max_untared_force_n
         allowed = (

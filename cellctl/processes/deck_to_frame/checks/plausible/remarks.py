@@ -21,6 +21,9 @@ from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN, M
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.registration.rigid_fit import on_a_line
 
+_NEARLY = 0.05
+"""Of what three holes are spread along a line, across it."""
+
 
 def recipe_remarks(
     cell: CellConfig, recipe: DeckRecipe, key: str, folder: Path
@@ -39,7 +42,7 @@ def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
     for name in ("head_1", "head_2"):
         holes = getattr(drawing.features, name)
         places_m = np.array([drawing.position_mm(hole) for hole in holes]) * MM
-        if len(holes) >= 3 and on_a_line(places_m):
+        if len(holes) >= 3 and on_a_line(places_m, _NEARLY):
             said = "these holes lie on one line; right if the drawing has them so"
             yield drawing.issue(name, str(list(holes)), said)
 

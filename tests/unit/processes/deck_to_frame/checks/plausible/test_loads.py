@@ -1,0 +1,32 @@
+"""Forces and accelerations of a recipe against the load that hangs on the arm."""
+
+from pathlib import Path
+
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.load import load_cell
+from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+
+CONFIG = Path(__file__).parents[6] / "config"
+
+
+def found(mass_kg: float) -> list[ConfigIssue]:
+    cell = load_cell(CONFIG / "deck.toml")
+    (recipe,) = cell.recipes
+    assert isinstance(recipe, DeckRecipe)
+    main = cell.robots["main"]
+    assert main.load is not None
+    load = main.load.model_copy(update={"mass_kg": mass_kg, "not_weighed_kg": 0.0})
+    robots = {**cell.robots, "main": main.model_copy(update={"load": load})}
+    return list(load_issues(cell.model_copy(update={"robots": robots}), recipe, "recipes[1]"))
+
+
+def test_the_shipped_load_begins_to_move_without_being_taken_for_a_contact() -> None:
+    assert found(200.0) == []
+
+
+def test_a_heavy_load_must_begin_to_move_more_slowly() -> None:
+    (issue,) = found(650.0)
+    assert issue.key == "recipes[1].mating.acceleration_mm_s2"
+    # 20 N / 2 / 650 kg
+    assert issue.allowed.startswith("at most 15: 650 kg that begin to move")
