@@ -126,6 +126,7 @@ def test_without_dask_it_says_what_to_install(
     assert "pip install 'cellctl[study]'" in done.stderr
 
 
+@pytest.mark.long  # its seeds are whole matings
 @pytest.mark.timeout(600)
 def test_ctrl_c_keeps_what_is_finished_and_the_next_start_goes_on(tmp_path: Path) -> None:
     words = ["-m", "cellctl", "study", "deck-mating", "--out", str(tmp_path), "--workers", "1"]
