@@ -48,7 +48,7 @@ class SmallCell:
 
     def _own(self, text: str) -> str:
         def own_port(match: re.Match[str]) -> str:
-            port = self.ports.setdefault(int(match[1]), free_port())
+            port = self.ports.setdefault(int(match[1]), free_port(self.ports.values()))
             return match[0].replace(match[1], str(port))
 
         return _PORTS.sub(own_port, text)

@@ -13,7 +13,8 @@ from cellctl.calibration.store.envelope import read_stored, write_stored
 from cellctl.records.entries import RunHead
 from cellctl.records.store import RunStore
 from fakes.demo.control import Control
-from tests.rigs.whole_cell.own_cell import OwnCell, Program, free_port
+from tests.rigs.whole_cell.own_cell import OwnCell, Program
+from tests.rigs.wire.ports import free_port
 
 pytestmark = pytest.mark.timeout(300)
 

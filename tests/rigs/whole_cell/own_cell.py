@@ -2,10 +2,8 @@
 
 import json
 import os
-import random
 import re
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -21,6 +19,7 @@ from uuid import uuid4
 from fakes.demo.control import Control
 from fakes.demo.page import write_settings
 from fakes.scenes.load import load
+from tests.rigs.wire.ports import free_port
 
 ROOT = Path(__file__).parents[3]
 CONFIG = ROOT / "config"
@@ -28,19 +27,6 @@ _PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD|RPC|FRAMES) = (\d{4})\b")
 _MARK = "CELLCTL_TEST_FAMILY"
 READY_S = 60.0
 END_S = 30.0
-
-
-def free_port() -> int:
-    """Below the range from which the system takes ports for outgoing connections."""
-    while True:
-        port = random.randrange(12_000, 32_000)
-        with socket.socket() as probe:
-            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            try:
-                probe.bind(("127.0.0.1", port))
-            except OSError:
-                continue
-        return port
 
 
 @dataclass
@@ -67,7 +53,7 @@ class OwnCell:
 
     def visited_from(self, folder: Path) -> Self:
         """The same fake cell with another cell file and store, and a Modbus port of its own."""
-        ports = {**self.ports, self._shipped_modbus_port: free_port()}
+        ports = {**self.ports, self._shipped_modbus_port: free_port(self.ports.values())}
         visitor = type(self)(folder, self.shipped, ports)
         visitor._write_cell()
         return visitor
@@ -98,7 +84,7 @@ class OwnCell:
 
     def _renumbered(self, text: str) -> str:
         def own_port(match: re.Match[str]) -> str:
-            port = self.ports.setdefault(int(match[1]), free_port())
+            port = self.ports.setdefault(int(match[1]), free_port(self.ports.values()))
             return match[0].replace(match[1], str(port))
 
         return _PORTS.sub(own_port, text)

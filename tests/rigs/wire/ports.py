@@ -2,12 +2,18 @@
 
 import random
 import socket
+from collections.abc import Container
 
 
-def free_port() -> int:
-    """Below the range from which the system takes ports for outgoing connections."""
+def free_port(taken: Container[int] = ()) -> int:
+    """Below the range from which the system takes ports for outgoing connections.
+
+    ``taken``: given away already, to somebody who does not listen yet.
+    """
     while True:
         port = random.randrange(12_000, 32_000)
+        if port in taken:
+            continue
         with socket.socket() as probe:
             probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
             try:
