@@ -19,19 +19,15 @@ from cellctl.errors.base import CellError
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.commissioned_contact import Commissioned
 from cellctl.processes.deck_to_frame.mating.mate import mate
-from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
+from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
-from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from fakes.demo.processes.deck_to_frame import LIMITED
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from tests.rigs.mating.cell import MatingCell
 from tests.rigs.mating.simulated_loop import run_simulated
-
-PIN_LIMIT_MM = 0.2
-FORCE_LIMIT_N = 50.0
-GAP_LIMIT_MM = 0.1
-"""Between the middles of the faces."""
+from tests.rigs.mating.trial import plan_for
 
 
 class Outcome(StrEnum):
@@ -64,12 +60,13 @@ class Figures:
 
     @property
     def beyond(self) -> bool:
-        """Beyond what a good part may have."""
-        return not (
-            (self.lateral_mm or 0.0) <= PIN_LIMIT_MM
-            and abs(self.gap_mm or 0.0) <= GAP_LIMIT_MM
-            and (self.peak_n or 0.0) < FORCE_LIMIT_N
-        )
+        """Beyond what the demonstration lets a good part have."""
+        true = {
+            "lateral_mm": self.lateral_mm,
+            "seat_gap_mm": self.gap_mm,
+            "peak_true_n": self.peak_n,
+        }
+        return not all(one.within(true[one.key]) for one in LIMITED if one.key in true)
 
     def row(self) -> dict[str, Any]:
         """Plain data."""
@@ -118,16 +115,14 @@ def run_chain(deck: Deck, shipped: Shipped, seed: int) -> Figures:
     )
     # Nothing was commissioned: the recipe's bounds count, as on a new cell.
     settings = mating_settings(shipped.sensor, setting.recipe, Commissioned(), payload_kg(deck))
-    return _mated(cell, setting.recipe, settings, known)
+    return _mated(cell, settings, known)
 
 
-def _mated(
-    cell: MatingCell, recipe: DeckRecipe, settings: MatingSettings, known: Figures
-) -> Figures:
+def _mated(cell: MatingCell, settings: MatingSettings, known: Figures) -> Figures:
     payload = cell.world.payload
     payload.peak_contact_force_n = 0.0
     try:
-        plan = _plan(cell, recipe, settings)
+        plan = plan_for(cell, settings)
         known = replace(known, speed_mm_s=plan.speed.speed_m_s / MM)
         result, held_n = _run(cell, plan)
     except CellError as fault:
@@ -144,19 +139,6 @@ def _mated(
     if not result.verdict.seated:
         return known
     return replace(known, outcome=Outcome.FALSE if known.beyond else Outcome.GOOD)
-
-
-def _plan(cell: MatingCell, recipe: DeckRecipe, settings: MatingSettings) -> MatingPlan:
-    """As the process plans it, from the pose that the loop has measured last."""
-    return plan_mating(
-        base_T_flange=cell.arm.encoder_pose(cell.world.time_s),
-        flange_T_deck=cell.flange_T_deck,
-        flange_T_sensor=cell.flange_T_sensor,
-        M_T_D=cell.M_T_D,
-        deck_thickness_m=recipe.deck_thickness_mm * MM,
-        over_travel_m=recipe.over_travel_mm * MM,
-        settings=settings,
-    )
 
 
 def _run(cell: MatingCell, plan: MatingPlan) -> tuple[MatingResult, float]:

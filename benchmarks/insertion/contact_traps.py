@@ -15,7 +15,6 @@ from scipy.spatial.transform import RigidTransform
 
 from benchmarks.insertion.contact_world import (
     ContactWorld,
-    Imperfections,
     Injected,
     SensorFault,
 )
@@ -136,7 +135,7 @@ def _placed(
     cell: CycleCell, made: _Made, rng: np.random.Generator, seed: int
 ) -> tuple[ContactWorld, ContactFrames]:
     """The world with the peg over its place, and frame A on the face that was touched."""
-    task, scenario = cell.plan.task, cell.scenario
+    scenario = cell.scenario
     part = draw_part(scenario, seed, 1)
     flange_T_tip = pose_from_xyzabc(cell.recipe.flange_T_tip)
     base_T_task = part.cell_T_hole * _OVER * RigidTransform.from_translation([0, 0, made.z0_m])
@@ -145,17 +144,11 @@ def _placed(
     # Where the true tip is to stand; the part sits in the fingers as it was drawn.
     height = RigidTransform.from_translation([x_m, y_m, _BEGIN_M])
     base_T_flange = _upright(part, flange_T_tip, height)
-    sensor = scenario.force_sensors[scenario.peg.force_sensor].model_dump()
     world = ContactWorld(
         scenario,
         part,
         base_T_flange,
-        Imperfections(
-            task.cell.repeatability_m,
-            task.cell.height_sigma_m,
-            sensor["noise_n"],
-            sensor["noise_nm"],
-        ),
+        cell.imperfections,
         np.random.default_rng([seed, 7]),
         injected=Injected(made.fit, made.grip_n, made.sensor),
     )

@@ -5,7 +5,6 @@ measured; see ``contact_world`` for what is simpler than on the wire.
 """
 
 import asyncio
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import cast
@@ -71,6 +70,15 @@ class CycleCell:
         scenario = SocketScenario.read(file.with_suffix(".scenario.toml"))
         return cls(scenario, recipe, settings, cycle_plan(recipe, settings))
 
+    @property
+    def imperfections(self) -> Imperfections:
+        """Of its arm, as the task states them, and of its sensor."""
+        stated = self.plan.task.cell
+        sensor = self.scenario.force_sensors[self.scenario.peg.force_sensor]
+        return Imperfections(
+            stated.repeatability_m, stated.height_sigma_m, sensor.noise_n, sensor.noise_nm
+        )
+
 
 @dataclass(slots=True, eq=False)
 class CycleOutcome:
@@ -119,19 +127,13 @@ def run_cycle(cell: CycleCell, seed: int, injection: CycleInjection | None = Non
 class _Cycle:
     def __init__(self, cell: CycleCell, seed: int, injection: CycleInjection) -> None:
         self._cell, self._outcome, self._injection = cell, CycleOutcome(seed), injection
-        task, scenario = cell.plan.task, cell.scenario
-        sensor: Mapping[str, float] = scenario.force_sensors[scenario.peg.force_sensor].model_dump()
+        scenario = cell.scenario
         self._above = from_written(scenario.taught[scenario.peg.carried_by]["above_hole"])
         self._world = ContactWorld(
             scenario,
             injection.part or draw_part(scenario, seed, 1),
             self._above,
-            Imperfections(
-                task.cell.repeatability_m,
-                task.cell.height_sigma_m,
-                sensor["noise_n"],
-                sensor["noise_nm"],
-            ),
+            cell.imperfections,
             np.random.default_rng([seed, 7]),
             injected=injection.world,
         )

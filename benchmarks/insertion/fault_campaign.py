@@ -4,25 +4,18 @@
 that does not stand at its seat.
 """
 
-import argparse
-import json
 import sys
 from collections import Counter
 from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
-from functools import cache
-from multiprocessing import get_context
-from pathlib import Path
 
 from rich.console import Console
-from rich.progress import track
 from rich.table import Table
 
-from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
+from benchmarks.insertion.cycles import CycleOutcome, run_cycle
+from benchmarks.insertion.farmed import farmed, jobs_of, options, pin_cell
 from benchmarks.insertion.fault_cycles import EXPECTED, CycleFault, injected
 from benchmarks.insertion.wilson import wilson_bounds
 
-WORKERS = 2
 TRIALS, QUICK_TRIALS = 20, 1
 
 Job = tuple[CycleFault, int]
@@ -30,35 +23,16 @@ Job = tuple[CycleFault, int]
 
 def main() -> int:
     """Exit code."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="one cycle of each fault")
-    parser.add_argument("-n", type=int, help=f"cycles of each fault, default {TRIALS}")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the first")
-    parser.add_argument("--out", type=Path, help="a file for one line of JSON per cycle")
-    arguments = parser.parse_args()
-    trials = arguments.n or (QUICK_TRIALS if arguments.quick else TRIALS)
-    jobs = [(fault, arguments.seed + n) for n in range(trials) for fault in CycleFault]
-    outcomes: list[CycleOutcome] = []
-    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        for job, outcome in zip(
-            jobs, track(pool.map(_run, jobs), "cycles", len(jobs)), strict=True
-        ):
-            outcomes.append(outcome)
-            if arguments.out is not None:
-                with arguments.out.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps(_plain(job, outcome)) + "\n")
+    found = options(__doc__, "cycles", TRIALS, QUICK_TRIALS)
+    jobs = jobs_of(CycleFault, found)
+    outcomes = list(farmed(_run, jobs, "cycles", _plain, found.out))
     Console(width=140).print(table(jobs, outcomes))
     return 1 if any(one.called_good and not one.seated for one in outcomes) else 0
 
 
-@cache
-def _pin() -> CycleCell:
-    return CycleCell.shipped("pin")
-
-
 def _run(job: Job) -> CycleOutcome:
     fault, seed = job
-    return run_cycle(_pin(), seed, injected(_pin(), fault, seed))
+    return run_cycle(pin_cell(), seed, injected(pin_cell(), fault, seed))
 
 
 def _plain(job: Job, outcome: CycleOutcome) -> dict[str, object]:

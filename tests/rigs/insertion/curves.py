@@ -14,6 +14,20 @@ NAMES = (
     "time_s", "x_mm", "y_mm", "depth_mm", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm",
 )  # fmt: skip
 """As in the record of a run."""
+TASK = """
+[fit]
+peg_radius_mm = 3.0
+clearance_mm = 0.05
+depth_mm = 12.0
+[seat]
+least_n = 5.0
+most_n = 30.0
+grip_n = 60.0
+[cell]
+stiffness_n_mm = 100.0
+force_sigma_n = 0.1
+"""
+"""The part and cell of ``Inserted()``, as a task file says them."""
 _PRESS_N, _FRICTION_N = 2.0, 0.4
 
 

@@ -219,6 +219,12 @@ _ADDRESSES = (
 )
 _LIMITS = (
     _within("seated_limit_mm = 2.0", f"{_RECIPE}.seated_limit_mm", "10 times threshold_mm"),
+    deck(
+        "threshold_about_x_deg = 0.014",
+        "threshold_about_z_deg = 0.012",
+        f"{_RECIPE}.pose_correction.threshold_about_z_deg",
+        "seated_limit_deg lets the seated deck have",
+    ),
     _within("seated_limit_deg = 1.0", f"{_RECIPE}.seated_limit_deg", "10 times threshold_deg"),
     _within("seated_gap_limit_mm = 2.0", f"{_RECIPE}.seated_gap_limit_mm", "at most 0.5"),
     _within("station_tolerance_mm = 100.0", f"{_RECIPE}.station_tolerance_mm", "at most 50"),

@@ -10,21 +10,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.offline.judge_insertion import judge_insertion
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
-from tests.rigs.insertion.curves import Inserted, as_csv, inserted
-
-TASK = """
-[fit]
-peg_radius_mm = 3.0
-clearance_mm = 0.05
-depth_mm = 12.0
-[seat]
-least_n = 5.0
-most_n = 30.0
-grip_n = 60.0
-[cell]
-stiffness_n_mm = 100.0
-force_sigma_n = 0.1
-"""
+from tests.rigs.insertion.curves import TASK, Inserted, as_csv, inserted
 
 
 def run(*words: str) -> Any:

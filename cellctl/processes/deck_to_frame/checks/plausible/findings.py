@@ -81,6 +81,9 @@ def _thresholds(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
     if correction.threshold_about_x_deg or recipe.seated_limit_about_x_deg:
         about_x = correction.thresholds_deg[0], recipe.seated_limits_deg[0]
         limits["threshold_about_x_deg"] = (*about_x, "seated_limit_about_x_deg")
+    if correction.threshold_about_z_deg:
+        about_z = correction.threshold_about_z_deg, recipe.seated_limits_deg[2]
+        limits["threshold_about_z_deg"] = (*about_z, "seated_limit_deg")
     for name, (threshold, most, limit) in limits.items():
         if threshold > most:
             # A deck within it would be mated, and then refused.

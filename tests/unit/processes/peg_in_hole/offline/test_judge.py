@@ -20,7 +20,7 @@ from cellctl.processes.peg_in_hole.offline.curve import parse_curve
 from cellctl.processes.peg_in_hole.offline.judge import judge_by_task, judge_curve
 from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart, parse_part
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegVerdict
-from tests.rigs.insertion.curves import NAMES, Inserted, as_csv, inserted
+from tests.rigs.insertion.curves import NAMES, TASK, Inserted, as_csv, inserted
 
 GOOD = Inserted()
 KEYED = replace(GOOD, turn_nm=(0.6, -0.6), pull_n=9.0)
@@ -270,23 +270,8 @@ def test_any_numbers_are_judged_or_refused(rows: list[tuple[float, ...]], keyed:
     assert not judgement.inserted
 
 
-TOML = """
-[fit]
-peg_radius_mm = 3.0
-clearance_mm = 0.05
-depth_mm = 12.0
-[seat]
-least_n = 5.0
-most_n = 30.0
-grip_n = 60.0
-[cell]
-stiffness_n_mm = 100.0
-force_sigma_n = 0.1
-"""
-
-
 def test_a_task_is_read_from_toml_json_and_the_record_of_a_run(tmp_path: Path) -> None:
-    told = parse_part(TOML)
+    told = parse_part(TASK)
     content = told.model_dump(mode="json")
     assert parse_part(json.dumps(content), as_json=True) == told
     run = {"documents": [{"key": "insertion.task", "content": content}]}
@@ -307,9 +292,9 @@ def test_a_task_is_read_from_toml_json_and_the_record_of_a_run(tmp_path: Path) -
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (TOML.replace("depth_mm = 12.0", ""), "depth_mm"),
-        (TOML.replace("depth_mm = 12.0", "depth_mm = -1"), "depth_mm"),
-        (TOML + "stiff = 3", "stiff"),
+        (TASK.replace("depth_mm = 12.0", ""), "depth_mm"),
+        (TASK.replace("depth_mm = 12.0", "depth_mm = -1"), "depth_mm"),
+        (TASK + "stiff = 3", "stiff"),
         ("[fit", "TOML"),
     ],
 )
