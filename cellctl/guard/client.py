@@ -52,7 +52,10 @@ class GuardClient:
         self._settings, self._module = settings, module
         self._child: GuardChild | None = None
         self._started: asyncio.Future[None] | None = None
+        """What ``start`` waits for: done when sensor and stop channel are open, or cannot be."""
         self._stopping = self._ready = False
+        """Whether the end was asked for, and whether ``start`` has succeeded: only a death after
+        the one and without the other is a trip."""
         self._trip: GuardTrip | None = None
         self._fault: CellError | None = None
         """Why the guard could not start, or gave up its sensor."""
@@ -80,6 +83,8 @@ class GuardClient:
             self._child.send(self._set_up())
             await self._until_started(self._started)
             await self._restore()
+        # Also when the caller is cancelled: a guard that nobody knows of would keep sensor and stop
+        # channel for itself.
         except BaseException as error:
             await self.stop()
             self._fault = error if isinstance(error, CellError) else None
@@ -97,7 +102,10 @@ class GuardClient:
         self._settle_start(GuardDied("the guard was stopped"))
 
     async def _restore(self) -> None:
-        """Give a new process what callers take for known; no tare, whose moment is theirs."""
+        """Give a new process the gravity compensation and the wrench frame of the one before.
+
+        Not its tare: only the caller knows when nothing touches the part.
+        """
         load, frame = self._gravity_compensation, self._wrench_frame
         if load is not None:
             await self._request("gravity_compensation", **load)
@@ -255,7 +263,8 @@ class GuardClient:
             self._latch(trip_from_json(message["trip"]))
         elif event == "ready":
             self._serial, self._degraded = message["serial"], tuple(message["degraded"])
-            if message["channel"]:  # there is none to wait for
+            # With a channel ``start`` goes on waiting, for the event that tells of the channel.
+            if not message["has_channel"]:
                 self._settle_start(None)
         elif event == "channel":
             self._take_channel(up=message["up"], fault=message["fault"])
@@ -292,5 +301,6 @@ class GuardClient:
         self._settle_start(GuardDied(how))
         # A death during the start is the failure of that start, and one that was asked for is none.
         if self._ready and not self._stopping:
+            # A fault that the guard has told before, such as a lost sensor, is not why it died.
             self._fault = None
             self._latch(GuardTrip(TripReason.GUARD_DIED, now_s(), how))

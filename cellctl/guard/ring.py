@@ -22,14 +22,20 @@ from cellctl.guard.limits import Six
 from cellctl.interfaces.ft_sensor import FtHealth, WrenchSample
 
 MAGIC = 0x4755_4152_4431
+"""``GUARD1`` in ASCII, the first word of the header; the second is the number of slots."""
 HEADER_BYTES = 4096
+"""One page, so that the slots begin at a page too."""
 HEAD, STATUS_NUMBER = 8, 16
-"""Index of these 64-bit words in the header."""
+"""Index of these 64-bit words in the header: bytes 64 and 128, each in a cache line of its own."""
 STATUS_OFFSET = 256
+"""Byte at which the status begins."""
 
 SLOT = struct.Struct("=Q3dQ12d")
 """Index, sample time, receive time, flange age, packet number, wrench (6), raw (6)."""
 _STATUS = struct.Struct("=d6Q2d8Qd12d")
+"""The fields of ``GuardStatus`` in their order: time, six counts, two times, the driver's eight
+counters and its rate, twelve peaks. The leading ``=`` in both layouts means no padding, so that
+``RingReader`` can name the same bytes as an array."""
 
 
 class GuardStatus(NamedTuple):
@@ -95,8 +101,10 @@ class RingWriter:
 
     def __init__(self, descriptor: int) -> None:
         self._memory, slots = attach(descriptor)
+        # A view of whole words: one assignment to it is one store of 64 bits, so a reader in the
+        # other process never sees half of a number.
         self._words = memoryview(self._memory)[:HEADER_BYTES].cast("Q")
-        self._mask = slots - 1
+        self._mask = slots - 1  # slots are a power of two, so this replaces a division
         self._head = 0
         self._status_number = 0
 
@@ -113,6 +121,7 @@ class RingWriter:
 
     def publish_status(self, status: GuardStatus) -> None:
         """Replace the status."""
+        # Odd from here on: a reader that looks in between tries again.
         self._words[STATUS_NUMBER] = self._status_number + 1
         status.pack_into(self._memory)
         self._status_number += 2

@@ -52,6 +52,8 @@ class RingReader:
     def since(self, since_s: float) -> GuardSamples:
         """All samples with a time after ``since_s``."""
         head = self._head()
+        # The slot behind the head is the one that the writer fills next, so it may change at any
+        # moment: one slot less than the ring has can be read.
         oldest = max(0, head - self._slots + 1)
         first = self._first_after(since_s, oldest, head)
         begin, end = first % self._slots, head % self._slots
@@ -65,6 +67,7 @@ class RingReader:
         intact = found["index"] == np.arange(first, head, dtype="u8")
         intact &= found["index"] >= max(0, self._head() - self._slots + 1)
         kept = found[intact]
+        # A stretch that begins with the oldest sample left may have begun before it.
         overrun = len(kept) < len(found) or (first == oldest and oldest > 0)
         return GuardSamples(
             time_s=kept["time_s"].copy(),

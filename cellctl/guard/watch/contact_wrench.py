@@ -107,7 +107,9 @@ class ContactWrenchModel:
             row[0] * down[0] + row[1] * down[1] + row[2] * down[2] + offset
             for row, offset in zip(self._load, self._offset, strict=True)
         ]
-        self._bias = ZERO  # so that ``apply`` gives T alone
+        # Cleared first: ``apply`` subtracts the bias, and here it has to give T times its argument
+        # and nothing else.
+        self._bias = ZERO
         fx, fy, fz, mx, my, mz = load
         transported = self.apply((fx, fy, fz, mx, my, mz))
         a, b, c, d, e, f = (

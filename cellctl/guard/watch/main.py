@@ -77,7 +77,7 @@ def run(
             set_up["fifo_priority"], set_up["cpu"], lock_memory=set_up["lock_memory"]
         )
         serial = sensor.serial_number()
-        loop.event("ready", serial=serial, degraded=degraded, channel=channel is None)
+        loop.event("ready", serial=serial, degraded=degraded, has_channel=channel is not None)
         try:
             loop.run()
         finally:

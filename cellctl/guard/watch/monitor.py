@@ -27,11 +27,14 @@ _FRESH_S = 0.05
 """A newest sample of this age is good enough to arm on. The request itself takes a few milliseconds
 to come, so a staleness limit shorter than that would refuse every arming."""
 _LONGEST_TARE_S = 60.0
+"""Far above any tare in use, which takes half a second: a longer one is a mistake of the caller,
+and nothing can be armed while it runs."""
 
 MOST_EXCUSED_S = 0.05
-"""So much of a silence may be a machine that stood still; whatever is longer counts as silence.
+"""Longest part of a silence for which a machine that stood still is an excuse.
 
-Once the machine runs again, a box or a robot outside of it has its data in the socket at once.
+Once the machine runs again, what a box or a robot outside of it has sent lies in the socket. A
+silence that lasts on is the device's own.
 """
 
 

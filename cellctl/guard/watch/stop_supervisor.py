@@ -36,6 +36,7 @@ class StopSupervisor:
         self._confirmed = False
         self._opener: threading.Thread | None = None
         self._retry_s = 0.0
+        """Monotonic time before which no new attempt to connect begins."""
         # The thread rings it when an attempt has ended, which wakes the loop out of ``select``.
         self._bell = os.eventfd(0, os.EFD_NONBLOCK)
 
@@ -112,6 +113,7 @@ class StopSupervisor:
         wanted_s = self._wanted_s
         if wanted_s is not None and not self._confirmed:
             self._request(now_s, first=False)
+            # No heartbeat any more: the robot's dead man stops what does not obey the request.
             if now_s - wanted_s > self._confirm_s:
                 return
         if self._channel is not None and self.up:
@@ -142,7 +144,7 @@ class StopSupervisor:
 
     def _lost(self, error: CellError, now_s: float) -> None:
         self.up, self.fault = False, error
-        self._retry_s = now_s
+        self._retry_s = now_s  # at once: only an attempt that fails is followed by a pause
         if self._channel is not None:
             self._channel.close()
 
