@@ -37,10 +37,10 @@ from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
 from cellctl.geometry.pose import Array
 
 _TURN_LEVER_M = 0.1
+"""A turn on the way counts as the way of a point so far from the tip."""
 _SHORTEST_M = 1e-6
 _MET_RATIO = 0.8
-"""Of the force limit, for a contact that nobody expected."""
-"""A turn on the way counts as the way of a point so far from the tip."""
+"""Share of the force limit that a contact which nobody expected may take."""
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
 """A motion may take so much longer than its way at full speed, before it is given up."""
 _HOLD_S = 30.0

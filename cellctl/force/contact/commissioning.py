@@ -53,7 +53,8 @@ def estimate_stop_latency(speeds_m_s: Array, overruns_m: Array) -> LatencyEstima
     the intercept. Raises ``CommissioningFailed`` when the speeds are too few or too alike, or the
     slope makes no sense.
     """
-    # Two points always lie on a line, and speeds that are alike leave its slope to the noise.
+    # Two points always lie on a line, so a third one is needed to see how well it fits; and speeds
+    # that are alike leave its slope to the noise.
     if len(speeds_m_s) < 3 or np.ptp(speeds_m_s) < 0.3 * np.max(speeds_m_s):
         raise CommissioningFailed(
             "latency needs three or more stops at speeds that differ by 30 % or more, got "
@@ -115,6 +116,8 @@ def _line(x: Array, y: Array) -> tuple[float, float, float, float]:
     slope = float(centred @ y) / spread
     offset = float(y.mean()) - slope * float(x.mean())
     residual = y - slope * x - offset
+    # Slope and intercept were taken from the same points, which therefore scatter less about this
+    # line than about the true one.
     freedom = max(len(x) - 2, 1)
     sigma = float(np.sqrt(residual @ residual / freedom / spread))
     return slope, offset, sigma, float(np.sqrt(np.mean(residual**2)))

@@ -63,7 +63,9 @@ class ComplianceLaw:
     """Bound of the total displacement from the stand-off."""
     greatest_yaw_rad: float
     smallest_step_m: float = 1e-6
+    """A shorter move changes no force that could be read: at 1e6 N/m it makes less than 1 N."""
     smallest_step_rad: float = 2e-6
+    """The same for the yaw: 1 µm at the end of a face that is 1 m long."""
 
     @property
     def gain(self) -> float:

@@ -40,7 +40,12 @@ class CurveStatistics:
 def curve_statistics(
     time_s: Array, wrench: Array, *, filter_s: float = 5e-3, final_s: float = 0.5
 ) -> CurveStatistics:
-    """Statistics of n ≥ 2 samples, ``wrench`` of shape (n, 6); ``ValueError`` for other shapes."""
+    """Statistics of n ≥ 2 samples, ``wrench`` of shape (n, 6); ``ValueError`` for other shapes.
+
+    ``filter_s`` is the window of the mean for the filtered peak. It is the time constant of the
+    guard's low-pass, so that the record shows about what the guard compared with its limit.
+    ``final_s`` is the stretch at the end that stands for the seated part.
+    """
     if len(time_s) < 2 or wrench.shape != (len(time_s), 6):
         raise ValueError("a curve needs at least two samples and six components")
     duration_s = float(time_s[-1] - time_s[0])

@@ -14,9 +14,12 @@ from cellctl.geometry.pose import Array
 EDGE_MARGIN_N_M = 2.75, 1.5
 """Allowance for tare, friction and the lever of the side force in the moments about x and y."""
 SEAT_DEPTH_M = 1e-4
-"""A part that stands higher than this above its seat, or lies deeper, is not seated."""
+"""A part that stands higher than this above its seat, or lies deeper, is not seated. A pin that is
+caught on its chamfer holds a part millimetres too high, so the bound need not be sharp; it is what
+the position of the contact is known to (``ContactWindow``)."""
 REST_RATIO = 0.8
-"""A seated part may keep this share of the side load that is allowed on the way."""
+"""A seated part may keep this share of the side load that is allowed on the way: at rest nothing
+pushes it, and what is left may be a pin that jams."""
 
 
 class SeatFinding(Enum):

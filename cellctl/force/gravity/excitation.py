@@ -18,13 +18,15 @@ MIN_POSES = {"rigid12": 4, "affine24": 6}
 two poses more leave residuals to judge the fit by."""
 
 MIN_TILT_RAD = np.deg2rad(3.0)
-"""Root-mean-square tilt of gravity below which a direction counts as not excited."""
+"""Root-mean-square tilt of gravity below which a direction counts as not excited. The planned cone
+of 12° has about twice that in both directions (``poses``)."""
 
 WIDE_TILT_RAD = np.deg2rad(20.0)
 """Root-mean-square tilt above which the direction of gravity can be told from cross-talk."""
 
 SAME_DIRECTION_RAD = np.deg2rad(0.5)
-"""Poses whose gravity directions differ by less count once."""
+"""Poses whose gravity directions differ by less count once: a pose that was recorded twice must not
+pass for two."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

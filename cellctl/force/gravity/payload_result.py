@@ -39,7 +39,7 @@ class PayloadResult:
         return all(check.passed for check in self.checks)
 
     def also(self, checks: tuple[PayloadCheck, ...]) -> "PayloadResult":
-        """The same with further tests that it has to pass."""
+        """This result with further tests that it has to pass."""
         return replace(self, checks=(*self.checks, *checks))
 
 

@@ -1,4 +1,8 @@
-"""Files of still poses in other units, or in another order, than their columns say."""
+"""Files of still poses in other units, or in another order, than their columns say.
+
+A file of forces in kN is fitted as well as one in N; only the mass is wrong by a thousand. The
+hints here are added to the refusal of such a file, so that the operator finds the mistake.
+"""
 
 from dataclasses import replace
 
@@ -14,17 +18,23 @@ _FACTORS = {
     9.80665: "forces look like kgf where N belong",
     1e-3: "forces look like mN where N belong",
 }
-"""Of the stated mass over the identified one."""
+"""Unit that was probably written, by the ratio of the stated mass over the identified one."""
 _NEAR = 0.2
+"""Relative distance within which a ratio counts as one of these: farther than any stated mass is
+off, and nearer than the next of them."""
 _NEAREST_M, _FARTHEST_M = 1e-3, 3.0
-"""The middle of what hangs on a sensor is farther from it than a millimetre, and nearer than a
-gripper is long."""
+"""The centre of mass of what hangs on a sensor is farther from it than a millimetre, and nearer
+than any gripper with its part is long."""
 _LIGHTEST_KG = 1.0
+"""A load that is identified as lighter than this was probably written in kN: no gripper with a part
+is so light."""
 
 
 def unit_hint(result: PayloadResult, stated_mass_kg: float | None) -> str:
     """Which unit was probably written in place of the one that the column says; empty for none."""
     rigid = result.identification.rigid
+    # The stated mass tells the unit of the forces at once. Without it the centre of mass does:
+    # moments over forces, so it is off by a thousand when one of the two has the wrong unit.
     if stated_mass_kg is not None:
         for factor, words in _FACTORS.items():
             if abs(stated_mass_kg / rigid.mass_kg / factor - 1.0) < _NEAR:
@@ -40,7 +50,7 @@ def unit_hint(result: PayloadResult, stated_mass_kg: float | None) -> str:
 
 
 def scalar_first_hint(record: PoseRecord) -> str:
-    """Whether the orientations go together when their first number is taken for the real part."""
+    """A hint when the poses go together with the real part of the quaternion first; else empty."""
     written = record.base_R_sensor.as_quat()
     other = replace(record, base_R_sensor=Rotation.from_quat(np.roll(written, -1, axis=1)))
     try:

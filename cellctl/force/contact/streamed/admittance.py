@@ -15,7 +15,8 @@ from scipy.spatial.transform import Rotation
 from cellctl.geometry.pose import Array
 
 RAMP_S = 0.3
-"""In which a push goes from what is felt to what is wanted."""
+"""Time in which a push grows from what is felt to what is wanted (section 4.2). A push that changed
+at once would be a step for the loop, and the arm would jump."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,8 +50,9 @@ class Admittance:
         self.gains = gains
         """May be replaced at any tick: displacement and speed are kept, so nothing jumps."""
         self.velocity: Array = np.zeros(6)
-        """That was really sent, after all bounds."""
+        """Shape (6,), m/s and rad/s: the speed of the last displacement, after all bounds."""
         self._shift_m: Array = np.zeros(3)
+        # A rotation and not a sum of rotation vectors: turns about different axes do not add up.
         self._turn = Rotation.identity()
 
     @property
@@ -61,20 +63,29 @@ class Admittance:
     @property
     def at_bound(self) -> NDArray[np.bool_]:
         """Shape (6,): axes that have given way as far as they may."""
+        # Not exactly the bound: a rotation vector that was clipped comes back from its rotation
+        # with the rounding of both conversions.
         near = np.abs(self.displacement) >= 0.999 * self._bounds.way
         return np.asarray(near & self.gains.follows)
 
     def step(self, push: Array, felt: Array) -> Array:
         """Displacement of the next tick; both arguments of shape (6,)."""
         gains, tick_s = self.gains, self._period_s
+        # With S v and K x taken at the end of the step, M (v' - v)/T = push + felt - S v' -
+        # K (x + T v'); solved for v' this is v' = (v + T/M (push + felt - K x)) / lag.
         lag = 1.0 + (tick_s * gains.damping + tick_s**2 * gains.spring) / gains.mass
         drive = push + felt - gains.spring * self.displacement
         wanted = (self.velocity + tick_s / gains.mass * drive) / lag
         wanted = np.clip(wanted, -self._bounds.speed, self._bounds.speed)
+        # The acceleration last: a bound of the speed that is reached at once would be a jerk.
         return self._move(self._accelerated(wanted))
 
     def hold(self) -> Array:
-        """The same displacement again, at half the speed: what a late tick gets."""
+        """The same displacement again, and half the speed for the next tick.
+
+        This is what a tick gets that comes late (section 4.2): the arm stands for one tick, and the
+        travel that was lost is not made up for.
+        """
         self.velocity = self.velocity / 2
         return self.displacement
 
@@ -90,10 +101,13 @@ class Admittance:
     def _move(self, velocity: Array) -> Array:
         tick_s, way = self._period_s, self._bounds.way
         shift_m = np.clip(self._shift_m + tick_s * velocity[:3], -way[:3], way[:3])
-        # Only the small correction is ever a rotation vector; the attitude itself may be any.
+        # Only the correction is a rotation vector, and it is small. That of a whole attitude would
+        # jump where its angle passes 180°.
         turned = Rotation.from_rotvec(tick_s * velocity[3:]) * self._turn
         turn = Rotation.from_rotvec(np.clip(turned.as_rotvec(), -way[3:], way[3:]))
-        # Back-calculation: a bound leaves no speed behind that would have to be undone first.
+        # The speed is calculated back from what was really done. Otherwise it would go on growing
+        # while the axis stands at its bound (wind-up), and would have to be undone first when the
+        # force turns round.
         rate = (turn * self._turn.inv()).as_rotvec() / tick_s
         self.velocity = np.concatenate([(shift_m - self._shift_m) / tick_s, rate])
         self._shift_m, self._turn = shift_m, turn
@@ -101,7 +115,7 @@ class Admittance:
 
 
 class PushRamp:
-    """Wanted push of a motion: begins at what is felt, so that nothing jumps."""
+    """The push of a motion from tick to tick: begins at what is felt, so that nothing jumps."""
 
     def __init__(
         self, felt: Array, push: Array, period_s: float, duration_s: float = RAMP_S

@@ -1,6 +1,9 @@
 """Dead time and stiffness of a contact loop from what it did, and whether they explain it.
 
-Section 4.5 of the study of insertion by touch.
+Source: section 4.5 of the study of insertion by touch, which also has the limits below. The arm is
+swung by a chirp in free air and on the face; ``fit_delay`` finds how late it follows. At standstill
+``fit_stiffness`` compares force and travel. Then the loop is closed with the gains that follow, and
+``fit_loop`` and ``check_step`` ask whether it behaves as they say.
 """
 
 from dataclasses import dataclass
@@ -14,20 +17,29 @@ from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.geometry.pose import Array
 
 BURST_TICKS = 200
+"""Least ticks of a burst. A dead time that holds for some bursts of a chirp only would be lost in a
+fit over the whole; the loop is planned with the greatest."""
 BURST_S = 0.5
-_FADED = 0.1
-"""Of a chirp at either end."""
+"""Least length of a burst where ticks are short."""
+_FADED_SHARE = 0.1
+"""Share of a chirp at either end over which it is faded in and out."""
 TICKS_OF_THE_LOOP = 1.5
-"""That a sampled loop adds to the delay from command to force: reading, computing, holding."""
+"""Ticks that a sampled loop adds to the delay from command to force: one for reading and computing,
+and half of one because a setpoint is held until the next."""
 _SLOWEST_HZ, _FASTEST_HZ = 0.5, 8.0
-_FINER = 4
-"""Steps of the model in one tick."""
+_STEPS_IN_A_TICK = 4
+"""Grid of the model: a delay is a fraction of a tick as a rule."""
 _GREATEST_RESIDUAL = 0.25
-"""Of a fit, as a share of what the response varies by."""
+"""Greatest residual of a fit over the standard deviation of the response. Beyond that the response
+is not mainly a delayed command, and a delay that was fitted to it means nothing."""
 _TOLERANCE = 0.30
+"""Greatest relative difference of k θ between the closed loop and the calculation."""
 _GREATEST_OVERSHOOT = 0.15
+"""Of a step in the closed loop. The gains are made for 6 to 8 %."""
 _SETTLED_SHARE = 0.1
+"""A force within this share of the step has settled."""
 _SETTLED_DEAD_TIMES = 6.0
+"""Within this many dead times a step has to settle. The gains are made for 3.5."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +54,7 @@ class DelayFit:
 
     @property
     def dead_time_s(self) -> float:
-        """Both together: what a slow signal is late by."""
+        """Delay and lag together: a signal that is slow against the lag comes late by their sum."""
         return self.delay_s + self.lag_s
 
 
@@ -57,34 +69,44 @@ class StiffnessFit:
 
 
 def chirp(amplitude_m: float, duration_s: float, period_s: float) -> Array:
-    """Displacement (n,) from 0.5 to 8 Hz, at every tick; begins and ends at rest at nought."""
+    """Displacement (m) at every tick, shape (n,): a sine whose frequency rises from 0.5 to 8 Hz.
+
+    It begins and ends at rest at nought.
+    """
     time_s = np.arange(round(duration_s / period_s) + 1) * period_s
     rate = (_FASTEST_HZ - _SLOWEST_HZ) / duration_s
     phase = 2 * np.pi * (_SLOWEST_HZ * time_s + rate * time_s**2 / 2)
-    # Faded in and out: a jump would excite the arm and not its delay.
-    fade = np.clip(np.minimum(time_s, time_s[-1] - time_s) / (_FADED * duration_s), 0.0, 1.0)
+    # A chirp that began or ended with a jump would make the arm swing at its own frequency, which
+    # says nothing about its delay.
+    from_the_ends_s = np.minimum(time_s, time_s[-1] - time_s)
+    fade = np.clip(from_the_ends_s / (_FADED_SHARE * duration_s), 0.0, 1.0)
     return np.asarray(amplitude_m * fade * np.sin(phase))
 
 
 def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> DelayFit:
     """Delay and lag from commands, each held until the next, to responses.
 
-    Shapes (n,) of the commands and (m,) of the responses; neither times need be regular.
-    Raises ``LoopFitRefused`` when a delay does not explain the response.
+    Shapes (n,) of the commands and (m,) of the responses, in time order; the times of both may be
+    irregular. Raises ``LoopFitRefused`` when a delay does not explain the response.
     """
     period_s = float(np.median(np.diff(sent_s)))
-    grid_s = np.arange(sent_s[0], read_s[-1] + period_s, period_s / _FINER)
+    grid_s = np.arange(sent_s[0], read_s[-1] + period_s, period_s / _STEPS_IN_A_TICK)
 
-    # The solver stops at small errors, whatever their unit; a scale of one makes them comparable.
+    # The solver stops when the errors change by little in numbers. In metres they would always be
+    # small, so they are divided by the size of the response.
     scale = max(float(np.std(response)), 1e-12)
 
     def model(parameters: Array) -> tuple[Array, Array]:
         delay_s, lag_s = parameters
         late = _held_mean(grid_s - delay_s, sent_s, command, period_s)
-        share = 2.0 * max(lag_s, 1e-6) * _FINER / period_s
+        # A first-order lag by the trapezoidal rule, which stays stable for any ratio of lag and
+        # grid. The filter starts at rest at the first value.
+        share = 2.0 * max(lag_s, 1e-6) * _STEPS_IN_A_TICK / period_s
         numerator, denominator = [1.0, 1.0], [share + 1.0, 1.0 - share]
         begun = lfilter(numerator, denominator, late - late[0]) + late[0]
         shaped = np.interp(read_s, grid_s, begun)
+        # Gain and offset of the response are linear: solved here for each delay and lag, they need
+        # no starting values and cannot lead the search astray.
         design = np.stack([shaped, np.ones_like(shaped)], axis=1)
         solved = np.linalg.lstsq(design, response, rcond=None)[0]
         return np.asarray(design @ solved - response), np.asarray(solved)
@@ -134,11 +156,13 @@ def burst_dead_times(
     *,
     in_use_s: Array | None = None,
 ) -> Array:
-    """Dead time of each burst of 200 ticks or more of a chirp, shape (n,): late ones count.
+    """Dead times (s) of the bursts of a chirp, 200 ticks or more each; shape (bursts,).
 
-    ``in_use_s`` (n,): age of the response that a loop has when it sends; its mean is added.
+    Commands have shape (n,), responses shape (n,) too, one for each tick. ``in_use_s`` of shape
+    (n,) is how old the newest response is when a loop sends its next command; its mean over the
+    burst is added, since the loop acts on a force of that age.
     """
-    faded = round(_FADED * len(command))
+    faded = round(_FADED_SHARE * len(command))
     whole = np.arange(faded, len(command) - faded)
     least = max(BURST_TICKS, round(BURST_S / float(np.median(np.diff(sent_s)))))
     pieces = np.array_split(whole, max(1, len(whole) // least))
@@ -173,16 +197,19 @@ def fit_loop(time_s: Array, push_n: Array, press_n: Array, damping_n_s_m: float)
     it by the delay of the loop. Raises ``LoopFitRefused`` or ``LoopNotMeasured``.
     """
     period_s = float(np.median(np.diff(time_s)))
+    # Travel of the arm times S, but for a constant: with the damping S its speed is the difference
+    # of push and force over S.
     done = np.cumsum(period_s * (push_n - press_n))
 
     def solved(dead_s: float) -> tuple[float, float]:
-        # Held for a tick, as every setpoint.
+        # Half a tick later, because a setpoint is held for a tick.
         late = np.interp(time_s - dead_s - period_s / 2, time_s, done, left=0.0)
         design = np.stack([late, np.ones_like(late)], axis=1)
         slope, offset = np.linalg.lstsq(design, press_n, rcond=None)[0]
         errors = slope * late + offset - press_n
         return float(np.mean(errors**2)), float(slope)
 
+    # Bounded: a loop whose dead time is a quarter of the record would not have settled in it.
     most_s = 0.25 * float(time_s[-1] - time_s[0])
     found = minimize_scalar(
         lambda dead_s: solved(dead_s)[0], bounds=(1e-4, most_s), method="bounded"

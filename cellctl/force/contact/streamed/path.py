@@ -15,10 +15,12 @@ class PathFollower:
         """
         self._points = points
         self._marks = np.concatenate([[0.0], np.cumsum(lengths)])
+        """Length from the first point to each of them."""
         self._acceleration, self._period_s = acceleration, period_s
         self._at = 0.0
+        """Length from the first point to where it is."""
         self.speed = 0.0
-        """In the unit of the lengths per second; negative backwards."""
+        """Present speed, in the unit of the lengths per second; negative while it goes back."""
 
     @property
     def remaining(self) -> float:
@@ -37,10 +39,16 @@ class PathFollower:
         return np.array(columns)
 
     def step(self, speed: float) -> Array:
-        """The point of the next tick on the way to a speed; it ends at the last point at rest."""
-        # Slow enough to stand at the end, in whole ticks.
+        """The point of the next tick on the way to ``speed``; it comes to rest at the last point.
+
+        A negative speed goes back along the path.
+        """
+        # The greatest speed v from which it can still stop at the end, losing ``step`` of speed in
+        # each tick: v T / 2 + v² / 2a is the way that is left.
         step = self._acceleration * self._period_s
         reach = np.sqrt(step**2 / 4 + 2.0 * self._acceleration * self.remaining) - step / 2
+        # Never slower than one tick can make up for: ``reach`` goes to nought with the way that is
+        # left, and the end would only be approached for ever.
         return self._move(min(speed, max(float(reach), min(step, speed))))
 
     def hold(self) -> Array:

@@ -1,7 +1,8 @@
 """What late ticks and old forces do to a motion: it slows, stands, and at last is given up.
 
-Lost travel is never made up for, and a force is never extrapolated. Source: section 4.2 of the
-study of insertion by touch.
+Travel that was lost is never made up for, because catching up is a jump; a force is never
+extrapolated, because in contact it may have turned round. Source: section 4.2 of the study of
+insertion by touch, with the factors below.
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,7 @@ from enum import StrEnum
 from cellctl.errors.streamed_contact import StreamLate
 
 _LOST_S = 0.05
+"""A stream without a tick for this time is lost, however slow its period is."""
 
 
 class Pace(StrEnum):
@@ -30,7 +32,9 @@ class TickRules:
     lost_s: float | None = None
     """A tick after this time ends the stream; None: after 50 ms or ten periods."""
     old_force_s: float = 5e-3
+    """With a newest force of this age the motion slows down: five samples at 1 kHz are missing."""
     lost_force_s: float = 20e-3
+    """With a newest force of this age it is given up."""
 
     def pace(self, tick_age_s: float, force_age_s: float) -> Pace:
         """How to go on after a tick; raises ``StreamLate``."""
@@ -42,6 +46,9 @@ class TickRules:
             )
         if force_age_s > self.lost_force_s:
             raise StreamLate(f"the newest force is {force_age_s * 1e3:.0f} ms old")
+        # A tick that is late gets the target of the one before, and so makes up for nothing. One
+        # that is later still brings the arm to rest, as a force does by which nobody can steer any
+        # more.
         if tick_age_s > 3.0 * self.period_s or force_age_s > self.old_force_s:
             return Pace.BRAKE
         return Pace.HOLD if tick_age_s > 1.5 * self.period_s else Pace.STEP

@@ -1,4 +1,7 @@
-"""First-order low-pass of the wrench, with the noise that it leaves."""
+"""First-order low-pass of the wrench, with the noise that it leaves.
+
+The same filter as ``LowPass`` of the guard, which may not load arrays (``guard.watch.detectors``).
+"""
 
 import numpy as np
 
@@ -31,6 +34,9 @@ class WrenchFilter:
 
 
 def left_of_noise(time_constant_s: float, sample_s: float) -> float:
-    """Ratio of the standard deviation after the filter to that before, for white noise."""
+    """Ratio of the standard deviation after the filter to that before, for white noise.
+
+    Of y' = y + a (x − y) the variance settles at a / (2 − a) of that of x.
+    """
     share = 1.0 - np.exp(-sample_s / time_constant_s)
     return float(np.sqrt(share / (2.0 - share)))
