@@ -14,7 +14,13 @@ from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.child import GuardChild
 from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits, GuardSettings
-from cellctl.guard.messages import Message, fault_from_json, limits_to_json, trip_from_json
+from cellctl.guard.messages import (
+    Message,
+    fault_from_json,
+    limits_to_json,
+    set_up_to_json,
+    trip_from_json,
+)
 from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult, TripReason
 from cellctl.guard.settling import USUAL, Settling
 
@@ -80,7 +86,7 @@ class GuardClient:
         slots, reply_s = self._settings.ring_slots, self._settings.reply_timeout_s
         self._child = GuardChild(slots, reply_s, self._take_event, self._died, module=self._module)
         try:
-            self._child.send(self._set_up())
+            self._child.send(set_up_to_json(self._sensor, self._stop, self._settings))
             await self._until_started(self._started)
             await self._restore()
         # Also when the caller is cancelled: a guard that nobody knows of would keep sensor and stop
@@ -234,20 +240,6 @@ class GuardClient:
                 await started
         except TimeoutError:
             raise GuardDied(f"not ready within {timeout_s:g} s after its start") from None
-
-    def _set_up(self) -> Message:
-        settings = self._settings
-        rotation = settings.flange_T_sensor.rotation.as_matrix()
-        return {
-            "sensor": self._sensor,
-            "stop_channel": self._stop,
-            "flange_R_sensor": rotation.ravel().tolist(),
-            "beat_s": settings.beat_s,
-            "stop_confirm_s": settings.stop_confirm_s,
-            "fifo_priority": settings.fifo_priority,
-            "cpu": settings.cpu,
-            "lock_memory": settings.lock_memory,
-        }
 
     async def _request(self, do: str, wait_s: float = 0.0, **fields: Any) -> Any:
         return await self._require_child().ask({"do": do, **fields}, wait_s)

@@ -14,7 +14,7 @@ from typing import Any
 from cellctl.errors.base import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.fault_catalogue import known_fault
-from cellctl.guard.limits import CusumTouch, GuardLimits
+from cellctl.guard.limits import CusumTouch, GuardLimits, GuardSettings
 from cellctl.guard.report import GuardTrip, TripReason
 
 Message = dict[str, Any]
@@ -35,6 +35,26 @@ def receive(link: socket.socket) -> Message | None:
         return None
     message: Message = json.loads(data)
     return message
+
+
+def set_up_to_json(
+    sensor: Message, stop_channel: Message | None, settings: GuardSettings
+) -> Message:
+    """The first message to a guard, from which it opens its devices.
+
+    ``sensor`` and ``stop_channel`` hold the ``name`` of a plug-in and its ``config``. What only the
+    daemon needs of the settings stays here.
+    """
+    return {
+        "sensor": sensor,
+        "stop_channel": stop_channel,
+        "flange_R_sensor": settings.flange_T_sensor.rotation.as_matrix().ravel().tolist(),
+        "beat_s": settings.beat_s,
+        "stop_confirm_s": settings.stop_confirm_s,
+        "fifo_priority": settings.fifo_priority,
+        "cpu": settings.cpu,
+        "lock_memory": settings.lock_memory,
+    }
 
 
 def limits_to_json(limits: GuardLimits) -> Message:
