@@ -19,7 +19,8 @@ _log = log.get(__name__)
 _NAMES = {int(command): command.name.lower() for command in COMMANDS}
 
 DISK_TIMEOUT_S = 3.0
-"""A command is refused when what it needs from the disk is not there after this time."""
+"""A command is refused when what it needs from the disk is not there after this time. A disk that
+works takes milliseconds, and a PLC or an operator wants an answer."""
 
 
 class CommandArbiter:

@@ -21,13 +21,15 @@ def permitted(
 ) -> Mapping[str, RejectCode]:
     """By name of the request: NONE if it would be taken now, else why it would be refused.
 
-    For whoever shows it to a person. The command path asks all of it again: this decides nothing.
+    For whoever shows it to a person, for instance as a button that is greyed out. It decides
+    nothing: the command path asks all of it again when a command comes.
     """
     found = {name: _plain(machine, Command[name.upper()], line_alive=line_alive) for name in PLAIN}
     for name, mode in _STARTS.items():
         found[name] = _start(machine, jobs, mode, line_alive=line_alive)
-    others = [mode for mode in Mode if mode not in (machine.mode, 0)]
+    others = [mode for mode in Mode if mode not in (machine.mode, Mode.INVALID)]
     codes = [_mode(machine, mode, line_alive=line_alive) for mode in others]
+    # NONE is the smallest code: the choice of a mode is offered when one of them would be taken.
     found["mode"] = min(codes, default=RejectCode.NONE)
     return found
 

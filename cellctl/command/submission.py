@@ -63,7 +63,8 @@ class Submission:
     async def or_overtaken(self, record: Coroutine[Any, Any, None]) -> None:
         """Wait for the record of a command that is being executed, until ``overtaken`` returns.
 
-        The record is written all the same: only nobody waits for it any more.
+        The record is written all the same, because the store carries out whatever was handed to
+        it. Only nobody waits for it any more.
         """
         await self._or_overtaken(record, "record of a command")
 

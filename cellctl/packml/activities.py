@@ -12,9 +12,11 @@ Action = Callable[[], Awaitable[None]]
 Task = asyncio.Task[None]
 
 _PAUSE = frozenset({State.HOLDING, State.SUSPENDING})
+"""States in which Execute is parked when it enters them at a safe point."""
 _STOPPING = frozenset({State.STOPPING, State.COMPLETING, State.ABORTING})
 """States that begin with the stop of all motion, unless nothing was left in its midst."""
 _PAUSED = _PAUSE | {State.HELD, State.UNHOLDING, State.SUSPENDED, State.UNSUSPENDING}
+"""States in which Execute stays parked; from any other it can never go on."""
 
 
 class Activities:

@@ -18,7 +18,8 @@ The unit follows ISA-TR88.00.02 (PackML), 2022 edition, with its default masks. 
 file are the whole machine: `transitions` is built from them, and nothing else changes the state.
 
 - Entering an acting state or Execute starts its coroutine; leaving cancels it. The next state
-  begins when the cancelled coroutine has cleaned up; only Aborting acts at once and waits later.
+  begins when the cancelled coroutine has cleaned up. Stopping, Completing and Aborting, which begin
+  with the stop of all motion, act at once and wait for it afterwards.
 - Hold and Suspend in Execute are noted and executed at the next safe point of the step. Execute is
   then parked, not cancelled: after Unhold it goes on and is told that it was held.
 - A numbered fault leads by its reaction to Holding, Stopping or Aborting; where the present state

@@ -19,10 +19,13 @@ from cellctl.packml.validation import MODE_REQUEST, Refusal, validate_command, v
 Gate = Callable[[State, Command], RejectCode]
 
 _PAUSE_COMMANDS = {Command.HOLD: State.HELD, Command.SUSPEND: State.SUSPENDED}
+"""Commands that Execute obeys at its next safe point, and the state that each leads to."""
 _BEFORE_EXECUTE = frozenset({State.STARTING, State.UNHOLDING, State.UNSUSPENDING})
+"""States that lead to Execute; a Hold that comes in them waits for its first safe point."""
 _ACTS_WITHOUT_PAUSE = frozenset({State.RESETTING})
 """Robots may move, and there is no safe point: what would hold elsewhere stops here."""
 _RELEASES_FAULTS = frozenset({Command.CLEAR, Command.RESET, Command.UNHOLD})
+"""Commands by which somebody says that the cause of the faults is gone."""
 _LEADS_TO = {
     Reaction.HOLD: (Command.HOLD, Command.STOP, Command.ABORT),
     Reaction.WARN: (Command.STOP, Command.ABORT),
@@ -57,6 +60,9 @@ class PackMLMachine:
         self._gate = gate
         self._mode = Mode.PRODUCTION
         self._pause: Command | None = None
+        """Hold or Suspend, noted for the next safe point."""
+        # Every change of state happens while it is held. So no two of them mix, although observers
+        # and safe points may give other tasks a turn.
         self._turn = asyncio.Lock()
         self._changed = asyncio.Event()
         self._reactions: set[asyncio.Task[None]] = set()
@@ -188,7 +194,11 @@ class PackMLMachine:
         return self.state
 
     async def beat_while_alive(self, beat: Callable[[], None], period_s: float = 0.25) -> None:
-        """Call ``beat`` for ever, each time only after the machine has taken a turn."""
+        """Call ``beat`` for ever, each time only after the machine has taken a turn.
+
+        So the heartbeat that the line sees stops when the state machine hangs, even if the rest of
+        the daemon goes on.
+        """
         while True:
             async with self._turn:
                 beat()
@@ -281,6 +291,7 @@ class PackMLMachine:
         self.refusals.append(Refusal(now_s(), self._mode, self.state, request, code, number))
 
     def _announce(self, previous: State | None = None) -> None:
+        # A new event for each change: whoever waits from now on waits for the next one.
         self._changed.set()
         self._changed = asyncio.Event()
         for observer in self.on_change:

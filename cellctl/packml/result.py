@@ -4,17 +4,17 @@ from enum import IntEnum
 
 
 class Result(IntEnum):
-    """Belongs to the command with the number ``done_seq``."""
+    """How the command with the number ``done_seq`` has ended."""
 
     NONE = 0
-    """Not ended."""
+    """It has not ended yet."""
     GOOD = 1
     """Done; for Start: the part is good."""
     BAD = 2
     """Start ended in Completed and the part is not good."""
     REJECTED = 3
-    """Not begun, see ``reject_code``."""
+    """It was not begun; ``reject_code`` says why."""
     STOPPED = 4
     ABORTED = 5
     IGNORED = 6
-    """Stood in the registers when the cell started."""
+    """It stood in the registers when the cell started, and was not executed."""

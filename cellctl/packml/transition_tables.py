@@ -44,6 +44,7 @@ WHEN_DONE: dict[State, State] = {
 }
 
 MODE_CHANGE_IN = frozenset({State.STOPPED, State.IDLE, State.ABORTED})
+"""States in which the mode may change: nothing runs that was begun in the old one."""
 
 NOT_IN_MODE: dict[Mode, frozenset[State]] = {
     Mode.PRODUCTION: frozenset(),

@@ -27,7 +27,7 @@ class Refusal:
     request: str
     code: RejectCode
     number: int = 0
-    """Of the command that was refused; of a mode ``MODE_REQUEST`` more than that."""
+    """Number of the command that was refused, or ``MODE_REQUEST`` plus that of the mode."""
 
 
 def validate_command(state: State, mode: Mode, command: int) -> RejectCode:

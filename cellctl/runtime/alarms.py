@@ -19,7 +19,7 @@ class ActiveAlarm:
 
     number: int
     text: str
-    """With the facts of this occurrence."""
+    """Text of the fault, with the facts of this occurrence."""
     since: datetime
     """UTC."""
     run: int | None
@@ -47,6 +47,7 @@ class Alarms:
         """Take over what was active before the restart."""
         for alarm in await self._store.do(RunStore.active_alarms):
             known = ActiveAlarm(alarm.number, alarm.text, alarm.time, alarm.run)
+            # The oldest of each number counts, and the store gives the oldest first.
             self._active.setdefault(alarm.number, known)
         if self._active:
             _log.warning("alarms not yet acknowledged", numbers=self.numbers)

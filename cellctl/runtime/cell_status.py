@@ -18,10 +18,11 @@ class ShownRefusal:
 
     age_s: float
     mode: Mode
-    """Of the unit, at that moment."""
+    """Mode of the unit when it refused."""
     state: State
+    """State of the unit when it refused."""
     request: int
-    """Number of the command; of a mode 0x100 more than that."""
+    """Number of the command, or 0x100 plus the number of the mode that was asked for."""
     code: RejectCode
 
 
@@ -53,9 +54,10 @@ class CellStatus:
     run_number: int = 0
     run_result: Result = Result.NONE
     validity_h: Mapping[str, float] = field(default_factory=dict)
-    """By name of the register; one that no calibration of the cell belongs to reads 0."""
+    """Hours of validity left, by name of the register. A register to which no calibration of the
+    cell belongs reads 0."""
     validity_least_h: float = math.inf
-    """Of the calibrations that the cell requires, the first to end; infinite where it requires
+    """Hours until the first of the required calibrations ends; infinite where the cell requires
     none."""
     error_mm_deg: tuple[float, ...] = (NO_VALUE,) * 6
     """x, y, z in mm, rx, ry, rz in degrees."""
@@ -65,8 +67,8 @@ class CellStatus:
     force_limit_n: float = NO_VALUE
     serial: str = ""
     mode_time_s: float = 0.0
-    """Since the mode changed last: ModeTimeCurrent."""
+    """Seconds since the mode changed last: ModeTimeCurrent."""
     state_time_s: float = 0.0
-    """Since the state changed last: StateTimeCurrent."""
+    """Seconds since the state changed last: StateTimeCurrent."""
     refusals: tuple[ShownRefusal, ...] = ()
     """The last eight at most, the newest first."""

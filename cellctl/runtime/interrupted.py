@@ -19,8 +19,10 @@ from cellctl.runtime.process import Process
 _log = log.get(__name__)
 
 READING_S = 0.2
-"""Samples of the force that are averaged."""
+"""Length of the stretch of force samples that is averaged."""
 PATIENCE_S = 1.0
+"""Longest wait for that stretch. A sensor that sends nothing must not keep the cell from coming
+up."""
 _POLL_S = 0.02
 
 
@@ -61,7 +63,11 @@ def _poses(cell: Cell) -> list[str]:
 
 
 async def _force(cell: Cell, name: str) -> str:
-    """The mean wrench of one sensor; without tare, so the drift of its zero is in it."""
+    """The mean force on one sensor in words.
+
+    No tare is taken: nobody knows whether the part is in contact, and a tare would hide just that.
+    So the drift of the sensor's zero is part of the figure.
+    """
     guard, begin_s = cell.guards[name], now_s()
     try:
         while guard.latest().time_s < begin_s + READING_S:

@@ -12,8 +12,8 @@ T = TypeVar("T")
 class Interruption:
     """One for each run. A process runs what it wants to be able to leave inside ``unless``.
 
-    Cancelling ends a coroutine with no more than its clean-up, which stops the robot. Whoever
-    presses on a part may have to do more, such as backing off, and does that in the ``except`` of
+    Cancelling ends a coroutine with no more than its clean-up, which stops the robot. A step that
+    presses on a part may have to do more, such as backing off. It does that in the ``except`` of
     the fault that comes out of ``unless``.
     """
 

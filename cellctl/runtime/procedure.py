@@ -21,7 +21,8 @@ class ProcedureContext:
     board: ProgressBoard
     safe_point: SafePoint
     record: "JobRecord"
-    """To be opened by a procedure that ``opens_record``, before it moves."""
+    """The record of the run. A procedure that ``opens_record`` opens it before it moves
+    anything."""
 
     async def progress(self, done: int, total: int, message: str) -> None:
         """Tell how far it is, and obey a pending Hold.
@@ -45,7 +46,7 @@ class ProcedureOutcome:
     warnings: tuple[str, ...]
     picture_png: bytes | None
     serial_number: str
-    """Of the instrument that was calibrated."""
+    """Serial number of the instrument that was calibrated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +70,7 @@ class Procedure:
 
     @property
     def opens_record(self) -> bool:
-        """Opens the record of its run itself, with the recipe whose parts it works on and the
-        calibrations that count; of any other procedure it is opened before, without both."""
+        """Whether it opens the record of its run itself, with the recipe whose parts it works on
+        and the calibrations that count. For any other procedure the record is opened before it
+        begins, without either."""
         return self.contact or self.handles_parts

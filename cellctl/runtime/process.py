@@ -120,8 +120,9 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     async def show_contact_force(self) -> None:
         """Have the guards subtract the weight of the payload, as far as it is known; moves nothing.
 
-        Called once after a start that found an interrupted run. Raises the faults of calibrations
-        and guard; by default nothing is done.
+        Called once after a start that found an interrupted run, so that the operator is told the
+        force of the contact and not the weight of the part. Raises the faults of calibrations and
+        guard; by default nothing is done.
         """
 
     @classmethod

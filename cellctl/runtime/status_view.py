@@ -44,7 +44,7 @@ class StatusView:
         machine, progress, time_s = self._machine, self._board.current, self._now_s()
         faults = machine.faults
         # An alarm stays active when its fault was released, and a fault stays latched when its
-        # alarm was acknowledged: the line sees both.
+        # alarm was acknowledged: the line sees both, and each number once.
         alarms = tuple(dict.fromkeys((*self._alarms.numbers, *(f.number for f in faults))))
         return CellStatus(
             state=machine.state,
@@ -100,7 +100,8 @@ class StatusView:
     def _force_z_n(self) -> float:
         """Fz of the first force sensor in the cell file: the register has room for one sensor.
 
-        The register says that gravity is removed: without a payload to remove there is no value.
+        The register map says that gravity is removed from it. As long as no payload is known there
+        is nothing to remove, and so no value.
         """
         guard = next(iter(self._cell.guards.values()), None)
         sample = None if guard is None else guard.newest()

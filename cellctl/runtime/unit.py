@@ -37,8 +37,10 @@ _log = log.get(__name__)
 
 MAY_MOVE = frozenset({Command.RESET, Command.START, Command.UNHOLD, Command.UNSUSPEND})
 """Commands after which a robot may move."""
-_AT_WORK = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
+_CLEARED = frozenset(STATES) - {State.ABORTING, State.ABORTED, State.CLEARING}
+"""States that the unit reaches only through a Clear that succeeded: its devices are connected."""
 AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
+"""States in which the unit waits for a command and no robot is being moved."""
 
 
 class UnitController:
@@ -50,7 +52,7 @@ class UnitController:
         self._store = store
         self._jobs = JobRunner(cell.time_limits)
         self.board = ProgressBoard()
-        # In the log, too: who reads it later learns what the arm was doing when something happened.
+        # In the log, too: it shall say later what the arm was doing when something happened.
         self.board.observers.append(on_new_message(lambda text: _log.info("doing", text=text)))
         self.background = Background()
         self.alarms = Alarms(store, self.background)
@@ -104,6 +106,7 @@ class UnitController:
         if self._interrupted:
             _log.warning("an earlier process left runs open", runs=self._interrupted)
         await self.alarms.open()
+        # All of them: parts are counted since installation, and only the records know that.
         heads = await self._store.do(RunStore.runs, limit=1_000_000)
         if heads:
             self._jobs.recall(heads[0])
@@ -114,11 +117,11 @@ class UnitController:
     async def come_up(self) -> None:
         """Connect the devices, as Clear does; then the unit is Stopped, else Aborted by a fault."""
         await self.machine.command(Command.CLEAR)
-        await self.machine.wait_for(*_AT_WORK, State.ABORTED)
+        await self.machine.wait_for(*_CLEARED, State.ABORTED)
 
     async def until_live(self) -> None:
         """Wait until a Clear has connected the devices."""
-        await self.machine.wait_for(*_AT_WORK)
+        await self.machine.wait_for(*_CLEARED)
 
     @property
     def live(self) -> bool:
@@ -190,7 +193,7 @@ class UnitController:
             await self._cell.connect()
         else:
             await reconnect({**self._cell.grippers, **self._cell.digital_ios})
-        # Once the devices are there, whenever that is: before, nobody knows where an arm stands.
+        # Once the devices are there: before, nobody knows where an arm stands.
         if self._interrupted:
             await self._tell_of(self._interrupted)
             # Emptied last: a Clear that is cut short here has told nobody, and the next one does.
@@ -252,7 +255,10 @@ class UnitController:
             raise error
 
     async def _stop_motion(self) -> BaseException | None:
-        """What went wrong; a driver that never comes back must not keep the run from its end."""
+        """Stop all motion; what went wrong, or None: the run is closed before a fault is raised.
+
+        A driver that never comes back must not keep the run from its end.
+        """
         stop_s = self._cell.time_limits.stop_s
         stopping = asyncio.create_task(self._cell.stop_motion())
         try:
@@ -273,6 +279,7 @@ class UnitController:
         return await self.machine.safe_point()
 
     def _gate(self, _state: State, command: Command) -> RejectCode:
+        """Refuse what may move a robot while one of them is not connected, or the daemon ends."""
         refused = command in MAY_MOVE and not self.live
         return RejectCode.DEVICE_NOT_READY if refused else RejectCode.NONE
 
@@ -283,8 +290,7 @@ class UnitController:
     def _faulted(self, error: CellError) -> None:
         _log.error("fault", number=error.number, fault=str(error), remedy=error.remedy)
         self.alarms.add(error, self._jobs.run_number)
-        # In the background, because observers of the machine must neither wait for the disk nor
-        # raise.
+        # In the background: observers of the machine must neither wait for the disk nor raise.
         self.background.start(self._invalidate_after(error))
 
     async def _invalidate_after(self, error: CellError) -> None:

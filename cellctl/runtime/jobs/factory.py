@@ -25,7 +25,8 @@ from cellctl.runtime.steps import SafePoint
 _log = log.get(__name__)
 
 PLANNED = timedelta(minutes=30)
-"""Calibrations must stay valid for this long after Start."""
+"""Calibrations must stay valid for this long after Start, so that none ends while a part is made. A
+run takes minutes; the rest is room for a Hold, after which everything is measured again."""
 
 
 class JobFactory:
@@ -44,16 +45,16 @@ class JobFactory:
 
         The state machine itself refuses modes without Start, in other states the whole command.
         """
-        # The order first: an unknown recipe is the caller's mistake and stays one when the devices
-        # are ready.
-        return await self._validate_order(command, mode) or _refused(*self._validate_cell())
+        # What is asked for comes first: an unknown recipe is the caller's mistake, and stays one
+        # when the devices are ready.
+        return await self._validate_request(command, mode) or _refused(*self._validate_cell())
 
     def ready(self, mode: Mode) -> bool:
-        """Whether some Start in this mode would be taken; cheap."""
+        """Whether some Start in this mode would be taken; cheap, reads no files."""
         return self.refusal(mode) is RejectCode.NONE
 
     def refusal(self, mode: Mode) -> RejectCode:
-        """Why no Start in this mode would be taken, whatever it asks for; cheap."""
+        """Why no Start in this mode would be taken, whatever it asks for; cheap, reads no files."""
         if mode is Mode.PRODUCTION and not self._some_recipe_is_calibrated():
             return RejectCode.CALIBRATION_INVALID
         return self._validate_cell()[0]
@@ -86,13 +87,17 @@ class JobFactory:
     def _recipe(self, recipe_id: int) -> Recipe | None:
         return self._services.cell.config.recipe(recipe_id)
 
-    async def _validate_order(self, command: UnitCommand, mode: Mode) -> RejectCode:
+    async def _validate_request(self, command: UnitCommand, mode: Mode) -> RejectCode:
+        """Why the recipe or procedure that a Start names cannot be run."""
         if mode is Mode.PRODUCTION:
             recipe = self._recipe(command.recipe_id)
             if recipe is None:
                 return RejectCode.RECIPE_UNKNOWN
+            # A clock that was set back would make calibrations valid again that have ended. The
+            # newest entry of the run store shows it: no entry can be from the future.
             newest = await self._services.store.do(RunStore.newest_time)
             kinds = self._processes[recipe.process].calibration_kinds()
+            # In a thread, because it reads and checks files.
             fault = await asyncio.to_thread(
                 self._services.calibrations.fault,
                 [kind.for_recipe(recipe.id) for kind in kinds],

@@ -14,7 +14,7 @@ class Job(ABC):
     """
 
     number: int
-    """Recipe or procedure, for the line."""
+    """Number of the recipe or procedure, as the line knows it."""
     serial: str
     makes_part: bool = False
     """True for a job whose good end counts as one more part."""

@@ -16,7 +16,7 @@ from cellctl.interfaces import Robot, RobotState
 from cellctl.records.files.motion_file import MotionWriter
 
 POLL_S = 0.02
-"""Controllers report every 20 ms."""
+"""As often as controllers report: more looks would find the same report again."""
 WRITE_S = 0.5
 """How often what was collected is encoded, in a thread: seconds of samples at once would keep the
 interpreter, and with it the heartbeats, from their turn."""
@@ -65,7 +65,8 @@ class MotionRecorder:
         begin_s = now_s()
         self._felt_s = dict.fromkeys(self._guards, begin_s)
         self._notes.listeners.append(self._noted)
-        # As of now: when it began may be hours ago, and a viewer would show all of them.
+        # What holds at the beginning, such as state and registers, is dated now. It may have begun
+        # hours ago, and a viewer would show a recording that is hours long.
         held = [replace(one, time_s=begin_s) for one in self._run_notes.newest]
         self._collected.run_notes += held
         self._run_notes.listeners.append(self._told)
@@ -84,6 +85,7 @@ class MotionRecorder:
             await asyncio.gather(self._task, return_exceptions=True)
         if self._writing is not None:
             await self._writing
+        # Once more: what came since the last writing is the end of the motion.
         self._collect_states()
         self._collect_samples()
         await asyncio.to_thread(self._write, self._collected)

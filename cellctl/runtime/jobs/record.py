@@ -33,7 +33,7 @@ class JobRecord:
     def __init__(self, cell: Cell, store: AsyncRunStore, command: UnitCommand) -> None:
         self.store = store
         self.number = 0
-        """Of the run; 0 until it is open."""
+        """Number of the run; 0 until it is open."""
         self._cell = cell
         self._command = command
         self._opening: asyncio.Task[None] | None = None
@@ -90,7 +90,8 @@ class JobRecord:
         try:
             await motion.finish()
             await self.store.do(RunStore.keep_recording, self.number)
-        # It serves later questions, as raw images do. The run has to be closed without it too.
+        # The recording serves later questions, as raw images do. Without it the run has to be
+        # closed all the same.
         except RecordsError as error:
             _log.error("motion not kept", run=self.number, fault=str(error))
 

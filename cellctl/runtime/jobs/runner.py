@@ -17,7 +17,7 @@ from cellctl.runtime.jobs.job import Job
 
 _log = log.get(__name__)
 
-_TO_THE_LINE = {
+_RESULT_FOR_LINE = {
     RunResult.GOOD: Result.GOOD,
     RunResult.BAD: Result.BAD,
     RunResult.STOPPED: Result.STOPPED,
@@ -42,14 +42,20 @@ class JobRunner:
     def __init__(self, time_limits: TimeLimits) -> None:
         self._limits = time_limits
         self._job: Job | None = None
+        """The present job, from its start until its record is closed."""
         self._newest: Job | EarlierRun | None = None
+        """The present job, or the last one."""
         self._before: tuple[Job | EarlierRun | None, Result] = None, Result.NONE
+        """What was shown when the newest job started."""
         self._closing: asyncio.Task[None] | None = None
         self._resting = asyncio.Event()
+        """Set while no coroutine of a job runs."""
         self._resting.set()
         self._begun = self._finished = self._given_up = False
+        """Of the newest job: Starting has ended, Execute has ended, and its record was given up,
+        because the disk did not answer in time."""
         self.result = Result.NONE
-        """Of the newest job; NONE while it is open."""
+        """Result of the newest job; NONE while it is open."""
 
     @property
     def shown(self) -> Job | EarlierRun | None:
@@ -57,15 +63,17 @@ class JobRunner:
 
         In Starting it is the run before until the record of the new one is open.
         """
-        return self._run[0]
+        return self._shown_run[0]
 
     @property
     def shown_result(self) -> Result:
-        """Of the run that is shown; NONE while it is open."""
-        return self._run[1]
+        """Result of the run that is shown; NONE while it is open."""
+        return self._shown_run[1]
 
     @property
-    def _run(self) -> tuple[Job | EarlierRun | None, Result]:
+    def _shown_run(self) -> tuple[Job | EarlierRun | None, Result]:
+        # Without its number the line could not tell which run it sees, so a job is not shown before
+        # it has one.
         newest = self._newest
         unrecorded = newest is not None and not (newest.run_number or self._begun)
         return self._before if unrecorded else (newest, self.result)
@@ -76,7 +84,8 @@ class JobRunner:
         A PLC that was waiting for the end of a run when the daemon died reads it here.
         """
         self._newest = EarlierRun(head.recipe_id, head.serial, head.number)
-        self.result = Result.NONE if head.result is None else _TO_THE_LINE[RunResult(head.result)]
+        result = head.result
+        self.result = Result.NONE if result is None else _RESULT_FOR_LINE[RunResult(result)]
 
     @property
     def run_number(self) -> int | None:
@@ -106,7 +115,7 @@ class JobRunner:
         """Do what the job does in Starting; ``RecordSilent`` while the last record is open."""
         if self._closing is not None:
             raise RecordSilent("the record of the run before is still being closed")
-        self._before = self._run
+        self._before = self._shown_run
         self._job = self._newest = job
         self._begun = self._finished = self._given_up = False
         self.result = Result.NONE
@@ -154,8 +163,9 @@ class JobRunner:
     async def _close(self, job: Job, outcome: RunResult, fault: CellError | None) -> None:
         try:
             outcome = await job.close(outcome, fault)
-            # What the line was told when the disk did not answer stays, whatever it says later.
-            self.result = Result.ABORTED if self._given_up else _TO_THE_LINE[outcome]
+            # What the line was told when the disk did not answer stays, whatever the disk says
+            # later.
+            self.result = Result.ABORTED if self._given_up else _RESULT_FOR_LINE[outcome]
         except CellError:
             self.result = Result.ABORTED  # a part without a record is not a good one
             raise
