@@ -13,6 +13,7 @@ Matrix = tuple[Six, Six, Six, Six, Six, Six]
 CanId = Annotated[int, Field(ge=0, le=0x7FF)]
 
 _BITS_PER_BYTE = 10
+"""On the serial line: a start bit, eight data bits, a stop bit."""
 
 
 class SriConfig(BaseModel):
@@ -64,8 +65,11 @@ class SriConfig(BaseModel):
 
     connect_timeout_s: Positive = 3.0
     reply_timeout_s: Positive = 1.2
+    """Longest wait for the reply to a command; public drivers of the box wait as long."""
     first_frame_timeout_s: Positive = 1.0
+    """Longest wait for the first frame of a stream, and for the next one of a running stream."""
     reconnect_s: Positive = 0.5
+    """Pause between attempts to connect again."""
     max_lag_s: Positive = 0.3
     """Samples that arrive later than this after they were taken end the connection. Seen where a
     stream starts late, or goes on late after a pause; a sample carries no time of its own."""

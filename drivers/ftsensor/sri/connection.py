@@ -31,7 +31,7 @@ class Connection(ABC):
 
     @abstractmethod
     def wait(self, timeout_s: float) -> None:
-        """Until there is something to do, or the time is over."""
+        """Wait until there is something to do, or until the time is over."""
 
     @abstractmethod
     def send(self, data: bytes) -> None:

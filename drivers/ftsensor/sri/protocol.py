@@ -20,6 +20,7 @@ Six = tuple[float, float, float, float, float, float]
 CHANNELS = 6
 _HEADER = b"\xaa\x55"
 _LONGEST_REPLY = 1024
+"""Bytes. The longest known reply, a matrix of 36 numbers, has some 500."""
 _REPLY_START = b"ACK+"
 _REPLY = re.compile(
     rb"ACK\+(?P<name>[A-Za-z0-9]+)=?(?P<value>[^\r\n$]*)(?P<end>\$OK|[^\r\n]*ERROR[^\r\n]*)\r\n"

@@ -71,7 +71,9 @@ class Sampler:
         # arrays cost many times as much (decision 0003).
         (a, b, c, d, e, f), at_end = self._convert(point)
         total = a + b + c + d + e + f
-        if total - total != 0.0:  # NaN and infinities do not cancel
+        # One test for all six: NaN and infinities survive the sum, and do not cancel against
+        # themselves.
+        if total - total != 0.0:
             # Dropped and counted, never passed on: comparisons with NaN are false, so no limit
             # would notice it.
             self.invalid += 1

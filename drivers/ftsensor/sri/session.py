@@ -11,7 +11,7 @@ from drivers.ftsensor.sri.startup import BoxSetup, Exchange, StartUp
 
 
 class Decoder(Protocol):
-    """Bytes of a connection to replies and frames."""
+    """Turns the bytes of a connection into replies and frames."""
 
     checksum_errors: int
     skipped_bytes: int
@@ -56,12 +56,13 @@ class BoxSession:
 
     @property
     def checksum_errors(self) -> int:
-        """Since the stream began; what was drained before does not count."""
+        """Frames with a wrong check since the stream began; what was drained before does not
+        count."""
         return self._decoder.checksum_errors - self._errors_before if self.streaming else 0
 
     @property
     def skipped_bytes(self) -> int:
-        """Since the stream began."""
+        """Bytes since the stream began that belonged to no frame and no reply."""
         return self._decoder.skipped_bytes - self._skipped_before if self.streaming else 0
 
     def pump(self, now_s: float) -> list[Frame]:
@@ -110,8 +111,8 @@ class BoxSession:
 
     def _require_prompt(self) -> None:
         """The first sample is taken when the stream starts: a first frame that is late is old."""
-        # Until when somebody has looked and found nothing. The time at which the frame was found
-        # would blame the box for a pause of this PC.
+        # The wait ends with the last look that has found nothing. Up to the time at which the frame
+        # was found it would blame the box for a pause of this PC.
         lag_s = self._empty_s - self._started_s - self._config.points / self._config.rate_hz
         if not self._was_prompt and lag_s > self._config.max_lag_s:
             raise faults.late(self._connection.peer, lag_s, self._config.max_lag_s)

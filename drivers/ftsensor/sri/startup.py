@@ -20,10 +20,15 @@ from drivers.ftsensor.sri.protocol import (
 )
 
 _DRAIN_S = 2.0
+"""Longest wait for the reply to a stop, behind the frames that are still on their way. Public
+drivers wait as long."""
 _QUIET_S = 0.3
+"""A box that has sent nothing at all for this time has stopped."""
 _CHANNELS = ("A01", "A02", "A03", "A04", "A05", "A06")
 _ONES = (1.0,) * 6
 _MATRIX_TOLERANCE = 1e-4
+"""Largest difference of an element from the calibration sheet, as a share of the greatest one in
+its row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,13 +56,16 @@ _Ask = Generator[Exchange, Reply | None, str | None]
 
 
 class AtStartUp:
-    """TCP and serial. The last yield starts the stream; frames follow."""
+    """Start-up over TCP and serial, by AT commands. The last yield starts the stream."""
 
     def __init__(self, config: SriConfig) -> None:
         self._config = config
 
     def run(self) -> StartUp:
-        """A previous session may still stream: stop and drain before anything else."""
+        """The exchanges from the first stop to the start of the stream.
+
+        A previous session may still stream, so the box is stopped and drained before anything else.
+        """
         # The answer comes behind the frames that are still on their way. Quiet counts as an answer
         # too: a box that sends nothing has stopped.
         yield Exchange(command("GSD", "STOP"), "GSD", _DRAIN_S, _QUIET_S)
@@ -151,7 +159,7 @@ class AtStartUp:
 
 
 class CanStartUp:
-    """CAN has no questions: stop, drain, start."""
+    """Start-up over CAN, which has no questions: stop, drain, start."""
 
     START, STOP = b"\x02", b"\x00"
 

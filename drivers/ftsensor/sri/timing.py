@@ -5,12 +5,16 @@ once. So the estimate runs ahead at the device's pace and is tied to the earlies
 """
 
 _WINDOW_S = 0.5
+"""Stretch over which phase and pace are estimated: long enough to hold samples that came at once,
+short against the drift of the two clocks."""
 _PAUSE_S = 0.25
 """An estimate this far behind has missed a pause of the stream: start from the arrival again."""
 
 _BACKLOG_S = 0.02
 """A sample this much earlier than estimated is one of those that a pause has held back."""
 _PACE_DOUBT = 0.02
+"""Relative difference between the pace of the phases and that of the arrivals, from which on the
+phases are not believed."""
 
 
 class SampleClock:
@@ -40,6 +44,7 @@ class SampleClock:
         self._periods = 0
         self._least_delay_s = 0.0
         self._jumped_s = self._jumped_before_s = 0.0
+        """What pauses have held back and nothing has made up for: now, and a window ago."""
         self.lag_s = 0.0
 
     def stamp(self, receive_s: float, periods: int, behind: int = 0) -> float:

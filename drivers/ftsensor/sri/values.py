@@ -10,7 +10,10 @@ Conversion = Callable[[tuple[float, ...]], tuple[Six, bool]]
 """Six values of a point to the wrench and whether a converter was at its end."""
 
 _FULL_SCALE = 65535
+"""Greatest count of the 16 bit converter."""
 _REFERENCE_MV = 5000.0
+"""What the converter reads at full scale: x in mV/V is (count − AMPZ) / 65535 · 5000 mV / CHNAPG /
+EXMV, as four public drivers compute it."""
 
 
 def engineering(point: tuple[float, ...]) -> tuple[Six, bool]:

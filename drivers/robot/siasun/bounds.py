@@ -21,11 +21,13 @@ STEP_MAX_ANGLE_DEG = 0.5
 """The controller refuses a STEP that turns further (protocol, section 4)."""
 DH_FITS_MM = 5.0
 DH_FITS_DEG = 0.5
-"""A table of the right arm fits its controller's pose much better, one of another does not."""
+"""Largest distance and angle between the flange that a controller reports and where the dh table
+puts it. The table of the right arm fits much better, that of another arm does not."""
 LINEAR_STEPS = WaySteps(
     way_m=0.05, turn_rad=math.radians(10.0), jump_rad=math.radians(45.0), at_most=8
 )
-"""The check runs on the event loop before every straight move: 8 points take 2 ms of it."""
+"""Points of a straight way at which the joints are solved for. The check runs on the event loop
+before every straight move, and 8 points take 2 ms of it."""
 
 
 class Bounds:
@@ -59,10 +61,10 @@ class Bounds:
             self._flange_in_box(self._chain, joints, "on the way to", joints_rad)
 
     def linear_way(self, state: RobotState, base_T_flange: RigidTransform) -> None:
-        """Refuse a straight move, of any length, that the arm cannot follow: out of its reach,
-        beyond the limits of its joints, or through a singular pose.
+        """Refuse a straight move, of any length, that the arm cannot follow.
 
-        To be asked after ``table_fits``. Raises ``WayNotReached``.
+        It may lead out of reach, beyond the limits of the joints, or through a singular pose. To be
+        asked after ``table_fits``. Raises ``WayNotReached``.
         """
         if self._chain is None:
             return
@@ -75,8 +77,10 @@ class Bounds:
             )
 
     def _beyond_limits(self, way_rad: Array) -> BrokenWay | None:
-        """The first of these joints, shape (n, 6), that is out of limits; where the arm stands
-        already counts not, because a move may lead out of there."""
+        """The first of these joints, shape (n, 6), that is out of limits, or None.
+
+        The first row, where the arm stands already, does not count: a move may lead out of there.
+        """
         for number, joints_rad in enumerate(way_rad[1:], start=1):
             joints_deg = np.degrees(joints_rad)
             if self._beyond(joints_deg):
@@ -89,9 +93,12 @@ class Bounds:
         return None
 
     def table_fits(self, state: RobotState) -> None:
-        """Refuse a robot that reports its flange elsewhere than the dh table puts it: a table of
-        another arm, a pose that is read with other units or another order of angles, or one that
-        counts in another tool or user frame, chosen at the pendant."""
+        """Refuse a robot that reports its flange elsewhere than the dh table puts it.
+
+        Then the table is that of another arm, or the pose is read with other units or another order
+        of angles, or it counts in another tool or user frame that was chosen at the pendant. Every
+        target would be as wrong as the report.
+        """
         if self._chain is None:
             return
         base_T_flange = self._chain.base_T_flange(state.joints_rad)

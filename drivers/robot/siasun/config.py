@@ -72,7 +72,7 @@ class MotionLimits(BaseModel):
     arrival_tolerance_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
     """A motion that reports its end farther from its target than this has failed."""
     arrival_tolerance_deg: Annotated[float, Field(gt=0.0, le=10.0)] = 0.1
-    """Of the flange's angle, and of every joint."""
+    """The same for the angle of the flange, and for every joint."""
 
     @property
     def joint_workspace_mm(self) -> tuple[Point, Point]:
@@ -101,7 +101,7 @@ class SiasunConfig(_Section, MotionLimits, ErrorList):
     command_port: Port
     state_port: Port
     reply_timeout_s: Seconds = 1.0
-    """For the answer to a command, and for the state to show its effect."""
+    """Longest wait for the answer to a command, and then for the state to show its effect."""
     stop_timeout_s: Seconds = 3.0
     move_timeout_s: Seconds = 120.0
     stale_s: Seconds = 0.25

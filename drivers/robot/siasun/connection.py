@@ -51,7 +51,7 @@ class SjlChannel:
         self._max_deadman_s = max_deadman_s
         self._robot_address = robot_address
         self._strangers: dict[str, CallerRefused | None] = {}
-        """By address; None once it was told."""
+        """Callers that are not the robot, by their address; the fault is None once it was told."""
         self._on_up = on_up
         self._on_record = on_record
         self._on_lost = on_lost
@@ -200,7 +200,7 @@ class SjlChannel:
 
 
 class _Client(asyncio.Protocol):
-    """Bytes of one accepted socket."""
+    """The socket of one caller: bytes in both directions, and its end."""
 
     def __init__(self, channel: SjlChannel) -> None:
         self.closed = asyncio.Event()

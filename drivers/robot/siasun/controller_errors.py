@@ -26,7 +26,7 @@ class ErrorList(BaseModel):
     """The part of a robot's settings that holds the list."""
 
     controller_errors: dict[Annotated[int, Field(ge=1)], ControllerError] = {}
-    """By the number that the controller reports."""
+    """Entries of the vendor's list by the number that the controller reports."""
 
     def error_words(self, number: int) -> str:
         """The number with what is known of it; empty for 0, which is no error."""

@@ -14,16 +14,17 @@ class DescribedArm(Robot):
     """Answers by the settings, which are ``MotionLimits``."""
 
     most_load_kg: ClassVar[float | None] = None
-    """Of any arm with this driver; None where arms of many sizes have it."""
+    """Greatest load of any arm with this driver; None where the driver is for arms of many
+    sizes."""
 
     @classmethod
     def checks_joint_ways(cls, config: Any) -> bool:
-        """Only with a dh table in the configuration."""
+        """True with a dh table in the settings: without one no way can be computed."""
         return config.dh is not None
 
     @classmethod
     def bounds(cls, config: Any) -> MotionBounds:
-        """As the configuration has them."""
+        """The bounds that the settings state, in SI units."""
         return MotionBounds(
             flange_box=Box.from_mm(config.workspace_min_mm, config.workspace_max_mm),
             joint_speed_ratio=config.max_joint_speed_percent / 100,
@@ -34,11 +35,12 @@ class DescribedArm(Robot):
 
     @classmethod
     def forward_kinematics(cls, config: Any) -> ForwardKinematics | None:
-        """By the dh table of the configuration."""
+        """Pose of the flange by joint angles, from the dh table of the settings; None without a
+        table."""
         chain = arm_chain(config)
         return None if chain is None else chain.base_T_flange
 
     @classmethod
     def chain(cls, config: Any) -> ArmChain | None:
-        """By the dh table and the joint limits of the configuration."""
+        """The arm by the dh table and the joint limits of the settings; None without a table."""
         return arm_chain(config)

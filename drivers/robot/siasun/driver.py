@@ -126,7 +126,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         return link_facts({"CMD": self._command.channel, "STA": self._state.channel})
 
     def round_trips_s(self) -> tuple[float, ...]:
-        """Of the commands of this session; the protocol has no question that does nothing."""
+        """Round trips of this session's commands: the protocol has no question that does nothing."""
         return tuple(self._command.round_trips_s)
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
@@ -237,7 +237,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         target.check_way(self.state(self._config.stale_s))
         try:
             base_T_flange = await self._command.run(build, self._config.move_timeout_s)
-        # Nobody knows whether the arm still moves, and nobody waits for its end any more.
+        # The arm may still move, and nobody waits for its end any more.
         except (asyncio.CancelledError, ReplyTimeout):
             await self._stop_before_leaving()
             raise
@@ -249,7 +249,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         state = self.state(self._config.stale_s)
         # The pose of DONE is the encoder pose at standstill, and newer than the last report.
         end = replace(state, base_T_flange=base_T_flange)
-        # It has another idea of the target, such as another frame; the next move would be wrong.
+        # The controller has another idea of the target, such as another frame: all moves are wrong.
         if off := target.off(end):
             self._latch = MotionAborted(f"{self.name} reports its end {off} away from the target")
             raise self._latch
@@ -289,12 +289,12 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     def _on_command_lost(self, fault: LinkError) -> None:
         self._latch = fault
         self._command.fail(fault)
-        # The main job of this form is blind while it moves the arm; its background job is not.
+        # Here the main job reads nothing while it moves the arm; its background job reads the stop.
         if self._state.channel.hello.compact:
             self._state.request_stop()
 
     def _on_state_lost(self, fault: LinkError) -> None:
-        """Nobody sees the arm any more. The other channel goes too: the robot may have restarted
-        and be unable to come back as long as its old connection seems to live."""
+        """Drop the other channel too: nobody sees the arm any more, and a robot that has restarted
+        cannot come back as long as its old connection seems to live."""
         self._on_command_lost(fault)
         self._command.channel.drop(fault)

@@ -27,11 +27,10 @@ async def followed(
 ) -> AsyncIterator[None]:
     """From the first setpoint to standstill, for which the controller has ``timeout_s``.
 
-    A setpoint that was refused by its bounds was not sent; ``not_taken`` is a refusal after which
-    the stream of this controller goes on, too. The arm goes no further than to the last
-    one, while a stop with its dead time would let it run on: so the end is that of a stream that is
-    finished. Where standstill is not confirmed within the loss time, whoever leaves the stream
-    stops it.
+    A setpoint that was refused by its bounds was not sent; ``not_taken`` is another refusal after
+    which the stream of this controller goes on. Then the stream is finished and not stopped: the
+    arm goes no further than to its last setpoint, while a stop with its dead time would let it run
+    on. Where standstill is not confirmed within the loss time, whoever leaves the stream stops it.
     """
     await stream.begin()
     try:

@@ -8,7 +8,7 @@ from drivers.robot.siasun.config import MotionLimits
 
 
 def arm_chain(config: MotionLimits) -> ArmChain | None:
-    """In SI units with the limits of its joints; None without a dh table."""
+    """The arm in SI units with the limits of its joints; None without a dh table."""
     if config.dh is None:
         return None
     scale = np.array([np.radians(1.0), MM, MM, np.radians(1.0)])

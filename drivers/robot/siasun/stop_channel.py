@@ -25,6 +25,7 @@ from drivers.robot.siasun.config import SiasunStopChannelConfig
 
 _CHUNK_BYTES = 4096
 _READS_PER_POLL = 8
+"""Most reads in one turn of the guard; see ``poll``."""
 _REPEAT_S = 0.5
 """A slow interpreter that has not confirmed a stop for so long is asked again."""
 
@@ -50,8 +51,8 @@ class SiasunStopChannel(StopChannel):
         self._compact = self._beat_due = False
         self._stop_record = b""
         self._asked_s: float | None = None
-        """When the last stop was asked for; None once a report from behind its standstill is here,
-        since whoever wants a stop then wants another one."""
+        """When the last stop was asked for. None again once a report has come after the standstill
+        was confirmed: whoever wants a stop then wants another one."""
         self._confirmed = False
         self._asked_record = b""
         self._last: Status | None = None
@@ -93,9 +94,12 @@ class SiasunStopChannel(StopChannel):
         self._pack_stop()
 
     def repeat_stop(self) -> None:
-        """ABORT again. To a slow interpreter, which reads one record a round, only from time to
-        time and with the same number: what queues up there is read after the release, and must be
-        no stop of its own then; and it would hold back the heartbeats behind it."""
+        """Send ABORT again, as long as the stop is not confirmed.
+
+        A slow interpreter reads one record in each of its rounds, so what is repeated queues up
+        there. It is repeated from time to time only, because heartbeats wait behind it, and with
+        the same number: it may be read after the release, and must be no new stop then.
+        """
         if not self._compact or self._asked_s is None:
             self.request_stop()
         elif now_s() - self._asked_s >= _REPEAT_S:

@@ -30,14 +30,14 @@ class Targets:
         self._arrival = Arrival(config)
 
     def joints(self, joints_rad: Array) -> MotionTarget:
-        """Of a joint move to joints of shape (6,)."""
+        """The target of a joint move: joints of shape (6,)."""
         return MotionTarget(
             lambda state: self._bounds.joint_way(state, joints_rad),
             lambda state: self._arrival.off_joints(state, joints_rad),
         )
 
     def flange(self, base_T_flange: RigidTransform) -> MotionTarget:
-        """Of a straight move of the flange, of any length."""
+        """The target of a straight move of the flange, of any length."""
         return MotionTarget(
             lambda state: self._bounds.linear_way(state, base_T_flange),
             lambda state: self._arrival.off_pose(state, base_T_flange),

@@ -16,9 +16,11 @@ LINGER_S = 0.2
 
 
 class RpcConnection(asyncio.Protocol):
-    """Used for one purpose only, as the vendor asks. Calls may be sent before earlier replies have
-    come. A reply that is late, damaged or not asked for ends the connection: what follows it would
-    be taken for the answer to something else. ``on_lost`` hears of every end but ``close``.
+    """A connection that is used for one purpose only, as the vendor asks.
+
+    Calls may be sent before earlier replies have come. A reply that is late, damaged or not asked
+    for ends the connection: what follows it would be taken for the answer to something else.
+    ``on_lost`` hears of every end but ``close``.
     """
 
     def __init__(self, label: str, on_lost: Callable[[LinkError], None]) -> None:

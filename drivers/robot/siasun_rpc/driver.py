@@ -106,7 +106,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         return self._link.facts()
 
     def round_trips_s(self) -> tuple[float, ...]:
-        """Of the questions for its state, which are asked all the time."""
+        """Round trips of the questions for the arm's state, which are asked all the time."""
         return tuple(self._link.watch.round_trips_s)
 
     async def selection(self) -> PendantSelection:
@@ -140,7 +140,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         )
 
     def stream_offer(self) -> StreamOffer:
-        """Only with a measured period in the configuration and a version that is known to do it."""
+        """What the configuration allows, if it has a measured period and the version can stream."""
         self._check_link()
         config, features = self._config, self._link.features
         if config.servo_period_ms is None or not features.streams:

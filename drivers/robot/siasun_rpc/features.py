@@ -19,7 +19,7 @@ SMOOTHED: Version = (3, 8, 4)
 
 @dataclass(frozen=True, slots=True)
 class ControllerFeatures:
-    """Of one controller."""
+    """What one controller can do."""
 
     version: str
     """As it names itself, empty when it does not know the call."""

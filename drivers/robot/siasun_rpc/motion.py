@@ -90,7 +90,8 @@ class Motion:
         except TimeoutError:
             facts = f"{self._robot}: task {self.task} has no end after {timeout_s:g} s"
             raise ReplyTimeout(facts) from None
-        # A task that is finished while the arm still moves is a contradiction.
+        # The task is finished, but the arm may not stand yet. If it does not come to rest, whoever
+        # leaves the motion has to stop it.
         self.over = False
         await self._link.watch.stands(self._config.stop_timeout_s)
         self.over = True
@@ -102,7 +103,7 @@ class Motion:
         check_ready(self._robot, report, frame, self._config.error_words(frame.error))
 
     async def unless_bad_end(self, state: int) -> int:
-        """The same state, unless it is a bad end, whose fault is raised."""
+        """Give the state back, or raise the fault of a task that has ended badly."""
         self.over = state not in STILL_ALIVE
         if state in GOING_ON or state == TaskState.FINISHED:
             return state

@@ -14,6 +14,7 @@ MOST_LOAD_KG = 35.0
 """Greatest load of any arm with this interface (vendor's manual: ``set_load_data``, 0 to 35 kg)."""
 _AT_THE_FLANGE_M = 1e-6
 _AT_THE_FLANGE_RAD = 1e-6
+"""A tool whose frame differs by less has the frame of the flange."""
 
 
 async def selection(link: RpcLink, euler: EulerOrder) -> PendantSelection:

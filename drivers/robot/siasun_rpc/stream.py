@@ -86,7 +86,7 @@ class ServoStream(PoseStream):
         self._expect_setpoint()
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
-        """In the next tick: what became of the last setpoint, then a new one."""
+        """In the next tick, see what became of the last setpoint and send this one."""
         self._motion.raise_end()
         self._motion.check_state()
         self._bounds.set_point(base_T_flange, self._last, self._start, self.limits)
@@ -128,7 +128,8 @@ class ServoStream(PoseStream):
         return tick
 
     async def _look_back(self) -> RigidTransform:
-        """Where the flange is, and by the state of its task whether the last setpoint counts."""
+        """The pose of the flange. Also finds, by the state of its task, whether the last setpoint
+        counts."""
         if self._sent is None:
             (pose,) = await self._exchange(self._pose_question)
             return read_pose(pose, self._config.euler)

@@ -37,10 +37,11 @@ _MODES = {
     OperationMode.REMOTE.value: RobotMode.REMOTE,
 }
 _FRAME_RAD = 0.5
-"""Between a frame and an answer; more than any joint turns in the time between two frames: at most
-225°/s (vendor's manual) for 0.1 s, which is 0.39 rad."""
+"""Largest difference of a joint between a frame and an answer. No joint turns so far in the time
+between two frames: 225°/s (vendor's manual) for 0.1 s are 0.39 rad."""
 _STILL_M = 2e-5
-"""Between two reports of an arm that stands; the brakes and the control move it less."""
+"""Distance between two reports within which an arm stands; its brakes and its control move it
+less."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +62,7 @@ class Report:
     stop_word: int
     """What the guard has counted its stops to, 0 without a guard."""
     rearm_word: int
-    """Up to which of them they are acknowledged."""
+    """The count up to which the guard's stops are acknowledged."""
 
     @property
     def guard_stopped(self) -> bool:
@@ -245,7 +246,7 @@ def read_pose(value: Value, euler: EulerOrder) -> RigidTransform:
 
 
 def write_pose(pose: RigidTransform, euler: EulerOrder) -> list[float]:
-    """The same for a call."""
+    """A pose as a call takes it: metres, and radians in the controller's order."""
     return [*pose.translation.tolist(), *angles_of(euler, pose.rotation).tolist()]
 
 

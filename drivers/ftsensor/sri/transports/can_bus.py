@@ -80,7 +80,7 @@ class CanConnection(Connection):
         return int(self._bus.fileno())
 
     def wait(self, timeout_s: float) -> None:
-        """For a message."""
+        """Wait for a message."""
         descriptor = self.fileno()
         select.select([] if descriptor < 0 else [descriptor], [], [], timeout_s)
 
@@ -98,7 +98,7 @@ class CanConnection(Connection):
             raise faults.lost(self.peer, error) from error
 
     def receive(self) -> bytes:
-        """All messages that wait."""
+        """All messages that wait, each as a record of ten bytes."""
         if self._bus is None:
             raise faults.lost(self.peer, "not connected")
         try:

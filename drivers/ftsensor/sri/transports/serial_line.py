@@ -53,7 +53,7 @@ class SerialConnection(Connection):
         return -1 if self._port is None else int(self._port.fileno())
 
     def wait(self, timeout_s: float) -> None:
-        """For bytes."""
+        """Wait for bytes."""
         select.select([] if self._port is None else [self._port], [], [], timeout_s)
 
     def send(self, data: bytes) -> None:

@@ -9,6 +9,7 @@ from drivers.ftsensor.sri.connection import Connection
 
 _CHUNK_BYTES = 4096
 _UNANSWERED_MS = 2000
+"""What was sent and is not acknowledged by then ends the link; see ``connect``."""
 
 
 class TcpConnection(Connection):
@@ -69,7 +70,7 @@ class TcpConnection(Connection):
         return self._socket.fileno() if self._socket is not None and self._established else -1
 
     def wait(self, timeout_s: float) -> None:
-        """For bytes, or while connecting for the end of that."""
+        """Wait for bytes, or while connecting for the end of the attempt."""
         sockets = [] if self._socket is None else [self._socket]
         connecting = [] if self._established else sockets
         select.select(sockets, connecting, [], timeout_s)

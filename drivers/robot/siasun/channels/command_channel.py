@@ -18,10 +18,11 @@ from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 
 MOST_COMMANDS = 2_800_000
-"""Of one session. The sum of a record of SJL/2 has seven digits in front of its point: what
-session, offsets and values leave of them, less 0.1 million."""
+"""Most commands of one session. A record of SJL/2 ends in the sum of its numbers, which has seven
+digits in front of its point. The count of commands may grow by what session number, offsets and
+values leave of them, less 0.1 million."""
 ROUND_TRIPS = 500
-"""So many are remembered."""
+"""How many round trips are remembered, for whoever commissions the link."""
 
 
 class CommandChannel:
@@ -108,7 +109,10 @@ class CommandChannel:
         self._seq = 0
 
     def _take(self, record: Record) -> None:
-        """Late answers to a command that was given up are passed over, and so are late ticks."""
+        """Hand a record to the command that it belongs to.
+
+        Late answers to a command that was given up are passed over, and so are late ticks.
+        """
         if isinstance(record, Tick):
             if self._running is not None:
                 self._running.take_tick(record)

@@ -24,8 +24,11 @@ Expected = TypeVar("Expected", Ack, Done)
 
 
 class RunningCommand:
-    """From its sending to its end. ``session`` and ``seq`` are those of its record; ``give_up`` is
-    called when the controller is silent or its answer makes no sense, before that is raised."""
+    """One command from its sending to its end.
+
+    ``session`` and ``seq`` are those of its record. ``give_up`` is called when the controller is
+    silent or its answer makes no sense, before that is raised.
+    """
 
     def __init__(
         self, robot: str, session: int, seq: int, give_up: Callable[[LinkError], None]

@@ -17,10 +17,15 @@ from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.connection import SjlChannel
 
 BEATS_PER_DEADMAN = 4
+"""Heartbeats within the time of a dead man. The protocol asks for three (section 6); the fourth is
+room for a late one."""
 REPEAT_STOP_S = 0.3
+"""A stop that is not confirmed is asked for again after this time."""
 REASON_S = 0.2
-"""For the report that says why the controller has ended a command."""
+"""Longest wait for the report that says why the controller has ended a command: ten reports."""
 _NEARLY = 0.8
+"""Share of the dead man's time. A longer pause between two heartbeats is told as the reason of a
+latch; see ``missed_beats``."""
 _MODES = {"MAN": RobotMode.MANUAL, "AUT": RobotMode.AUTOMATIC, "REM": RobotMode.REMOTE}
 
 
@@ -180,7 +185,7 @@ class StateChannel:
             raise ProtocolViolation(f"{self.channel}: {type(record).__name__} on this channel")
 
     def _take_status(self, status: Status) -> None:
-        """Not of a report that is no news."""
+        """Take a report, unless it is no news (``Status.follows``)."""
         if self._status is not None and not status.follows(self._status):
             return
         self._status, self._state, self._time_s = status, None, now_s()

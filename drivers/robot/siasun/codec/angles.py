@@ -13,7 +13,7 @@ EULER_ORDERS = {
     "XYZ": EulerOrder.MOVING_XYZ,
     "ROTVEC": EulerOrder.ROTATION_VECTOR,
 }
-"""By the word of the hello (docs/protocols/sjl-1.md, section 2)."""
+"""Orders of angles by their word in the hello (docs/protocols/sjl-1.md, section 2)."""
 
 
 def rotation_rows(order: EulerOrder, a_deg: float, b_deg: float, c_deg: float) -> Rows:

@@ -27,7 +27,7 @@ MAX_RECORD_BYTES = 255
 _COMPACT_HELLO = b"HELLO,SJL,"
 _OTHER_FORM = {True: VERSION, False: COMPACT_VERSION}
 _HELLO_FIELDS = 9
-"""Without options."""
+"""Fields of a hello without its options."""
 
 
 class RecordReader:

@@ -7,7 +7,9 @@ from drivers.robot.siasun.codec.records import COMPACT_VERSION, Hello
 from drivers.robot.siasun.protocol import VERSION
 
 HELLO_TIMEOUT_S = 2.0
+"""A caller that has not greeted by then is sent away: it would keep the robot from its port."""
 SESSIONS = 999_999
+"""Sessions are numbered from 1 to here and then from 1 again: six digits in the protocol."""
 
 
 def is_robot(caller: str, robot_address: str) -> bool:

@@ -10,10 +10,10 @@ from cellctl.geometry.euler_order import EulerOrder
 from drivers.robot.siasun.codec.angles import EULER_ORDERS
 
 COMPACT_VERSION = "2"
-"""Of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
+"""Version of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
 REPORT_COUNTS = 500_000_000
-"""After so many reports, and so many milliseconds, a job begins to count anew: their sum, which a
-report contains, has to fit into 32 bits."""
+"""After so many reports, and after so many milliseconds, a job begins to count anew. A report
+contains the sum of its numbers, which has to fit into 32 bits."""
 Six = tuple[float, float, float, float, float, float]
 
 
@@ -81,7 +81,7 @@ class Done:
 
 @dataclass(frozen=True, slots=True)
 class Rejected:
-    """Not accepted, nothing moved."""
+    """The command is refused, and nothing has moved."""
 
     seq: int
     reason: str

@@ -17,7 +17,7 @@ _MAX_DEPTH = 6
 one would exhaust the stack of the interpreter."""
 _VERSION = 0x8001
 _SIZES = {2: 1, 3: 1, 4: 8, 6: 2, 8: 4, 10: 8}
-"""Bytes of bool, byte, double, i16, i32, i64 by their number in the protocol."""
+"""Bytes of a value by the number of its type in the protocol: bool, byte, double, i16, i32, i64."""
 _STOP, _STRING, _STRUCT, _MAP, _SET, _LIST = 0, 11, 12, 13, 14, 15
 
 
@@ -26,7 +26,8 @@ class _IncompleteError(Exception):
 
 
 class MessageReader:
-    """Bytes in with ``feed``, whole messages out with ``next``."""
+    """Splits a stream of bytes into messages: bytes go in with ``feed``, whole messages come out
+    with ``next``."""
 
     def __init__(self) -> None:
         self._buffer = b""

@@ -42,7 +42,8 @@ class StateFrame:
 
 
 class FrameReader:
-    """Bytes in with ``feed``, frames out with ``next``."""
+    """Splits the state stream into frames: bytes go in with ``feed``, frames come out with
+    ``next``."""
 
     def __init__(self) -> None:
         self._buffer = b""

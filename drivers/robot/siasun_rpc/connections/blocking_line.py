@@ -13,8 +13,10 @@ from drivers.robot.siasun_rpc.codec.messages import Request, Value
 
 _CHUNK_BYTES = 4096
 _READS_PER_POLL = 8
+"""Most reads in one turn of the guard: a controller that floods it must not keep it from
+samples."""
 _MOST_WAITING = 64
-"""Calls without a reply, after which the controller counts as lost."""
+"""With so many calls without a reply the controller counts as lost."""
 
 
 class BlockingLine:
@@ -45,13 +47,13 @@ class BlockingLine:
             self._socket.setblocking(blocking)
 
     def close(self) -> None:
-        """Idempotent."""
+        """Drop the connection. Idempotent."""
         if self._socket is not None:
             self._socket.close()
             self._socket = None
 
     def fileno(self) -> int:
-        """-1 while closed."""
+        """Descriptor of the connection, -1 while closed."""
         return -1 if self._socket is None else self._socket.fileno()
 
     def wait(self, deadline_s: float) -> None:

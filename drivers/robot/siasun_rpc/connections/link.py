@@ -41,7 +41,7 @@ class RpcLink:
         self._on_lost = on_lost
         self.up = False
         self._wanted = False
-        """Between ``open`` and ``close``."""
+        """True between ``open`` and ``close``: a session that is lost meanwhile is made again."""
         self.features = ControllerFeatures("", streams=False)
         self._new_session()
         self.watch = StateWatch(robot, config, self._asking, self._frames)
@@ -141,8 +141,8 @@ class RpcLink:
                 standing.cancel()
 
     async def _reopen(self) -> None:
-        """Until it is back. The arm is stopped before anything else: nobody has seen what it did
-        meanwhile."""
+        """Try until the controller is back. The arm is stopped before anything else: nobody has
+        seen what it did meanwhile."""
         while not self.up:
             await asyncio.sleep(RECONNECT_S)
             # Whoever uses the robot has been told of the loss, and hears of it at every call.

@@ -97,4 +97,5 @@ _SHAPES: dict[str, tuple[int, bool, Callable[[str, list[int]], Record]]] = {
     "STOPD": (7, False, partial(_posed, StopDone)),
     "STAT": (19, False, _status),
 }
-"""How many numbers a record has before the sum, whether a reason follows the first of them."""
+"""By the word of a record: how many numbers it has before the sum, whether a reason follows the
+first of them, and what makes a value of them."""

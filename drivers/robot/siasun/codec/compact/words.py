@@ -10,7 +10,8 @@ _VALUE_OFFSET = 500_000.0
 
 @dataclass(frozen=True, slots=True)
 class CompactWords:
-    """``acceleration_max_mm_s2`` is what 100 percent mean on this controller."""
+    """The words of SJL/2. ``acceleration_max_mm_s2`` is what 100 percent mean on this
+    controller."""
 
     acceleration_max_mm_s2: float
 
@@ -41,7 +42,8 @@ class CompactWords:
         return _long("MOVL", session, seq, (*xyzabc, speed_mm_s, min(percent, 100.0)))
 
     def step(self, session: int, seq: int, xyzabc: Sequence[float], speed_mm_s: float) -> bytes:
-        """STEP, as in SJL/1, with a tenth of a second to its speed."""
+        """STEP, as in SJL/1. The arm takes a tenth of a second to reach its speed."""
+        # A step of SJL/1 has no acceleration, but the percents of this form need one.
         percent = 100.0 * 10.0 * speed_mm_s / self.acceleration_max_mm_s2
         return _long("STEP", session, seq, (*xyzabc, speed_mm_s, min(percent, 100.0)))
 
@@ -66,6 +68,6 @@ def _short(word: str, session: int, count: int) -> bytes:
 def _long(word: str, session: int, seq: int, values: Sequence[float]) -> bytes:
     counts = (session + _COUNT_OFFSET, seq + _COUNT_OFFSET)
     texts = [f"{value + _VALUE_OFFSET:.4f}" for value in values]
-    # Of the numbers as they are written, so that the controller finds the same sum.
+    # The sum is that of the numbers as they are written, so that the controller finds the same one.
     total = sum(counts) + sum(float(text) for text in texts)
     return f"{word}{counts[0]}{counts[1]}{''.join(texts)}{total:.4f};".encode("ascii")
