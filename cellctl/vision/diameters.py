@@ -1,4 +1,8 @@
-"""Holes that are all measured as wider or narrower than their drawing has them."""
+"""Holes that are all measured as wider or narrower than their drawing has them.
+
+A rim is measured up to 7 % off its nominal size (``rim.roi``). So a drawing of another part, or a
+head with a wrong scale, need not fail there, and is told here.
+"""
 
 from collections.abc import Sequence
 
@@ -9,12 +13,14 @@ from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement
 
 _OFF = 0.03
-"""Of the diameter: chamfers, light and blur move a rim by less on a hole of 5 mm."""
+"""Relative difference from the drawing that is told. Chamfers, light and blur move a rim by less on
+a hole of 5 mm."""
 _ALIKE = 0.01
+"""Largest difference between the ratios of the holes: the mistake is the same for all of them."""
 
 
 def other_diameters(result: PairMeasurement, holes: Sequence[Hole]) -> str:
-    """That the drawing, or the scale of the head, is another one; empty where holes fit.
+    """Words for a drawing, or for a scale of the head, that is another one; empty where holes fit.
 
     All holes have to be off by the same share: one alone may have a burr.
     """

@@ -34,8 +34,10 @@ from cellctl.vision.rim.roi import RimRoi
 from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
 
 SEARCH_RADIUS_M = 12e-3
+"""Distance from its predicted place within which a hole is looked for."""
 LAYOUT_TOLERANCE_M = 0.3e-3
-"""Largest deviation of a measured hole from the drawing."""
+"""Largest deviation of a measured hole from the drawing: what is off by more is another feature, or
+another part."""
 
 _COARSE_TOLERANCE_M = 2.5e-3
 """Largest deviation of features as they are first found, to one or two pixels."""
@@ -47,8 +49,11 @@ tenth of it, so more means two different features or a worn calibration."""
 _SIZE_AGREEMENT = 0.02
 """Largest difference of the diameters in both images, relative."""
 _MAX_BLUR_PX = 2.5
+"""Blur of a rim (standard deviation) beyond which its image counts as out of focus."""
 _SAME_PLACE_PX = 1.0
+"""Coarse places nearer to each other than this, in every hole, are the same assignment."""
 _MAX_TRIED = 10
+"""Most assignments that are measured, each with all its rims."""
 
 
 def measure_pair(

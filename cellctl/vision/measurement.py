@@ -19,8 +19,8 @@ class HoleMeasurement:
     name: str
     kind: str
     left_px: Array
-    """Raw pixel, shape (2,). Default method: onto which the circle's centre projects. Paper's
-    method: centre of the ellipse."""
+    """Raw pixel, shape (2,): where the centre of the circle projects to. By the paper's method it
+    is the centre of the ellipse, which lies beside that (eccentricity)."""
     right_px: Array
     left_covariance_px2: Array
     """Shape (2, 2)."""

@@ -12,7 +12,11 @@ from cellctl.interfaces.stereo_camera import Image
 
 
 def eight_bits(pixels: NDArray[np.uint16], bits: int) -> Image:
-    """The upper eight of the ``bits`` low bits of each sample; raises ``ValueError`` below 8."""
+    """The upper eight of the ``bits`` low bits of each sample; raises ``ValueError`` below 8.
+
+    The thresholds of the search and the noise model of the rims are in grey values of 8 bit. The
+    bits below them hold mostly noise.
+    """
     if bits < 8:
         raise ValueError(f"a sample of {bits} bits has no eight")
     return np.asarray(pixels >> (bits - 8), dtype=np.uint8)
@@ -21,7 +25,10 @@ def eight_bits(pixels: NDArray[np.uint16], bits: int) -> Image:
 def eight_bit_grey(
     pixels: NDArray[Any], pixel_format: PixelFormat, exposure: ExposureRecord | None
 ) -> Image:
-    """An image of any format, shape (height, width); deep ones have 16 bits unless it is said."""
+    """An image of any format in grey, shape (height, width).
+
+    A deep image holds 16 bits unless its exposure record says how many.
+    """
     if pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
         pixels = cv2.cvtColor(pixels, cv2.COLOR_RGB2GRAY)
     if pixel_format in (PixelFormat.MONO16, PixelFormat.RGB16):
@@ -30,5 +37,5 @@ def eight_bit_grey(
 
 
 def grey_of(image: CameraImage) -> Image:
-    """The same of a camera's image."""
+    """A camera's image in grey values of 8 bit, shape (height, width)."""
     return eight_bit_grey(image.pixels, image.pixel_format, image.exposure)

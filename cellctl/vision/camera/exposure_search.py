@@ -15,19 +15,23 @@ from cellctl.vision.camera.setting_up import SATURATED_GREY, image_figures
 from cellctl.vision.holes.candidates import Candidate, find_candidates, outermost
 
 _RING = (1.2, 1.8)
-"""From which radius to which the surface round a hole is looked at, in radii of the hole."""
+"""The surface round a hole is looked at between these multiples of the hole's radius, outside the
+blur of the rim."""
 _MOST_SATURATED = 0.005
-"""Share of the pixels that may be saturated: glints."""
+"""Share of the pixels that may be saturated, for the glints of a machined surface."""
 _TOLERANCE_GREY = 8.0
+"""The search ends this near to the wanted grey."""
 _MOST_CHANGE = 4.0
-"""Factor of one step. Dark images say little: their grey is mostly the black level."""
+"""Largest factor by which one step changes the exposure. A dark image says little about the next:
+its grey is mostly the black level."""
 _NEAR_SATURATION = 1.1
-"""Factor between an exposure that saturates and one that does not, below which it ends."""
+"""The search ends when the shortest exposure that saturates is within this factor of the present
+one: there is nothing between them that would be worth another image."""
 
 
 @dataclass(frozen=True, slots=True)
 class ExposureAim:
-    """What is wanted, in grey values of 8 bit and seconds."""
+    """The wanted grey (8 bit) of the surface, and the limits of the exposure (s)."""
 
     target_grey: float
     least_s: float
@@ -40,7 +44,8 @@ class ExposureAim:
 
 @dataclass(frozen=True, slots=True)
 class Brightness:
-    """How bright it is round the holes; where none is found, the bright part of the whole image."""
+    """Light on the surface round the holes. Where no hole is found, ``grey`` is that of the bright
+    part of the whole image and ``holes`` is 0."""
 
     grey: float
     saturated_share: float
@@ -48,7 +53,7 @@ class Brightness:
 
     @property
     def saturated(self) -> bool:
-        """More than glints."""
+        """True when more of the surface is saturated than glints explain."""
         return self.saturated_share > _MOST_SATURATED
 
 
@@ -58,7 +63,7 @@ class ExposureVerdict:
 
     next_s: float | None
     shortfall: str = ""
-    """Where it ends without the wanted grey: why."""
+    """Why the search ends without the wanted grey; empty when it has found it or goes on."""
 
 
 def light_round_holes(image: Image, radii_px: tuple[float, float]) -> Brightness:
@@ -74,9 +79,10 @@ def light_round_holes(image: Image, radii_px: tuple[float, float]) -> Brightness
 
 
 def of_all(views: Sequence[Brightness]) -> Brightness:
-    """Of the cameras of a head, which expose alike: the brighter one decides.
+    """The light of a head from that of its cameras, which share one exposure time.
 
-    Holes are there when each camera sees some.
+    The brighter camera decides, because what it has lost in saturation cannot be measured. Holes
+    count as seen when each camera sees some.
     """
     return Brightness(
         max(one.grey for one in views),
@@ -97,7 +103,8 @@ class ExposureSearch:
         """``exposure_s`` as the camera made it."""
         if light.saturated:
             self._saturated_s = min(self._saturated_s, exposure_s)
-            # Grey values at their end do not tell by how much it was too long.
+            # Grey values at their end do not tell by how much the exposure was too long, so it is
+            # halved.
             return self._unless_the_same(exposure_s, exposure_s / 2.0, "it saturates")
         too_dark = self._aim.target_grey - light.grey
         if abs(too_dark) <= _TOLERANCE_GREY:
@@ -107,6 +114,8 @@ class ExposureSearch:
         if wanted_s >= self._saturated_s:
             if self._saturated_s < _NEAR_SATURATION * exposure_s:
                 return ExposureVerdict(None, f"it saturates from grey {light.grey:.0f} on")
+            # Between an exposure that was too short and one that was too long, in the middle of
+            # their ratio.
             wanted_s = math.sqrt(exposure_s * self._saturated_s)
         return self._unless_the_same(exposure_s, wanted_s, f"its grey is {light.grey:.0f}")
 

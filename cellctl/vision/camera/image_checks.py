@@ -13,9 +13,13 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.stereo_head import StereoHead
 
 _BLACK_GREY = 12
+"""An image whose brightest pixels are below this is black: lamp off, cap on the lens."""
 _SATURATED_GREY = 254
 _SATURATED_SHARE = 0.25
+"""Share of saturated pixels from which on an image is refused: what lies beside the part may
+saturate."""
 _MIN_SPREAD_GREY = 12
+"""Least difference between the brightest and the darkest place of an image."""
 _STRIDE = 8
 """Every eighth pixel of every eighth row is enough for these statistics; places of so many pixels
 show the contrast."""

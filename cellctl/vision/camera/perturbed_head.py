@@ -1,4 +1,8 @@
-"""Heads as they may be as well, by the covariance of their calibration."""
+"""Heads that are as likely as the calibrated one, by the covariance of the calibration.
+
+With them anything that is computed from a head gets its share of the calibration's uncertainty: it
+is computed once for each of them, without any derivative of it having to be known.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,7 +14,7 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 
 _NOTHING = 1e-12
-"""Of the greatest direction: what is smaller is rounding."""
+"""Directions whose variance is below this share of the greatest one are rounding."""
 
 
 def perturbed_heads(head: StereoHead) -> Iterator[StereoHead]:

@@ -11,24 +11,30 @@ from cellctl.interfaces.stereo_camera import Image
 SATURATED_GREY = 254
 """From this value of 8 bit on a pixel counts as saturated."""
 _BLACK_GREY = 2
+"""Up to this value of 8 bit a pixel counts as black."""
 _SMOOTHING_PX = 1.0
 _EDGE_SHARE = 0.999
+"""Quantile of the slopes that counts as the steepest: not the maximum, which is a hot pixel."""
 _MIN_SPREAD_GREY = 12
+"""An image with less difference between bright and dark has no edge whose blur would say anything.
+The same limit as that of images to be measured (``image_checks``)."""
 _MATCH_PX = 800
 """Longer side of the reduced images in which both views are compared."""
 _FEATURES, _MIN_MATCHES = 1500, 12
 _GRID = 101
 """Places along each side of the left view that are looked for in the right one."""
 _MATCH_RATIO, _MATCH_ERROR_PX = 0.8, 4.0
+"""A match counts when its best partner is this much nearer than the second (Lowe's test), and when
+it lies this near to where the common plane puts it."""
 
 
 @dataclass(frozen=True, slots=True)
 class ImageFigures:
-    """Of one image, in grey values of 8 bit and pixels."""
+    """Light and focus of one image, in grey values of 8 bit and pixels."""
 
     median_grey: float
     bright_grey: float
-    """Which 99.8 % of the pixels do not exceed."""
+    """The grey that 99.8 % of the pixels do not exceed."""
     saturated_share: float
     black_share: float
     blur_px: float | None
@@ -51,9 +57,10 @@ def image_figures(image: Image) -> ImageFigures:
 
 
 def _blur_px(image: Image) -> float:
-    """From the steepest slopes: an edge of contrast c and blur s has the slope c / (s sqrt(2 pi)).
+    """Blur of the sharpest edges, from the steepest slopes of the image.
 
-    Smoothed first, so that noise does not pass for an edge; the smoothing is taken off again.
+    An edge of contrast c and blur s has the slope c / (s sqrt(2 pi)). The image is smoothed first,
+    so that noise does not pass for an edge, and the smoothing is subtracted again as a variance.
     """
     smooth = cv2.GaussianBlur(image.astype(np.float32), (0, 0), _SMOOTHING_PX)
     slope = np.hypot(

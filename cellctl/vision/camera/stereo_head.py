@@ -25,6 +25,8 @@ CAMERA_PARAMETERS = (
 )
 """Numbers of a camera; one with five terms of distortion has the first nine."""
 _ROTATION_TOLERANCE = 1e-6
+"""Largest element of R Rᵀ − I. OpenCV writes rotations to 1e-15; a matrix that was typed to five
+digits is off by more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,8 +54,9 @@ class StereoHead:
     """Shape (3,)."""
     rms_px: float
     covariance: Array | None = None
-    """In the order of ``parameter_order``, shape (24, 24) with five terms of distortion each, or
-    None when unknown: px, plain numbers, rad (R = Exp(dr) R0), m (file: mm)."""
+    """Covariance of the numbers in ``parameter_order``, shape (24, 24) with five terms of
+    distortion each; None when it is not known. Units are px, plain numbers, rad and m (mm in the
+    file). The rotation is perturbed as R = Exp(dr) R0."""
 
     @property
     def parameter_order(self) -> tuple[str, ...]:
@@ -161,7 +164,11 @@ def _file_scale(head: StereoHead) -> Array:
 
 
 def _covariance_from_json(data: Mapping[str, Any], head: StereoHead) -> Array | None:
-    """In our order; that of other programs means nothing here and is left out, with a warning."""
+    """The covariance of a file; None without one.
+
+    A covariance in another order than ours, from another program, cannot be assigned to the numbers
+    of the head: it is left out, with a warning.
+    """
     if data.get("covariance") is None:
         return None
     if data.get("covariance_order") != list(head.parameter_order):

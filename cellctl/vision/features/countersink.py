@@ -7,6 +7,7 @@ from cellctl.vision.features.hole_kind import HoleKind, RimEvidence, SecondEdge
 _NARROW_PX = 5.0
 """Both edges of a cone narrower than this blur into each other and must be fitted together."""
 _UNSEEN = SecondEdge(0.15, 0.08)
+"""Width when neither drawing nor image tells it, but the fit asks for a second edge."""
 _STATED_SHARE, _SEEN_SHARE = 0.1, 0.2
 """Standard deviation of the width over itself when the drawing states it and when the image shows
 it."""

@@ -18,10 +18,14 @@ from cellctl.interfaces.stereo_camera import Image
 Image32 = NDArray[np.float32]
 
 _MAX_EDGES = 12000
+"""Most edge pixels that vote; see ``_edges``."""
 _SUPPORT = 0.42
-"""Share of the circumference that must vote for a centre."""
+"""Share of the circumference that must vote for a centre. The fit of the rim needs 0.55 later
+(``rim.roi``); here, at reduced scale, rounding costs some of the votes."""
 _ARC_SUPPORT = 0.6
+"""A feature that overlaps another one needs this share of its support, or it is an arc of it."""
 _NOISE_FACTOR = 5.0
+"""Edges are steeper than this many times the slope that noise and texture make."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

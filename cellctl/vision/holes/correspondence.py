@@ -15,10 +15,11 @@ from cellctl.vision.holes.candidates import Candidate
 from cellctl.vision.registration.rigid_fit import kabsch, misfits_m, on_a_line
 
 _MAX_ASSIGNMENTS = 64
-"""More is never measured: beyond this the drawing does not tell the features apart."""
+"""Most assignments that are looked at: where there are more, the drawing does not tell the features
+apart."""
 _SIZE_TOLERANCE = 0.3
-"""Relative. Voting at reduced scale finds a radius to a tenth, and the rim of a chamfer or a cone
-may win over the one that is meant."""
+"""Largest relative difference of sizes. Voting at reduced scale finds a radius to a tenth, and the
+rim of a chamfer or a cone may win over the one that is meant."""
 
 
 @dataclass(frozen=True, slots=True)

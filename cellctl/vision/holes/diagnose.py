@@ -17,6 +17,7 @@ from cellctl.vision.holes.correspondence import (
 from cellctl.vision.holes.search import NEAR, WIDE, RoundFeatures, WholeImageSearch
 
 _TOLERANCE_M = 1.5e-3
+"""Tighter than the first search (``measure``): here a chance fit would accuse a camera."""
 
 
 def fault_without_layout(

@@ -17,6 +17,7 @@ from cellctl.vision.rim.edges import strongest_edges
 from cellctl.vision.rim.roi import RimRoi
 
 _REACH_PX = 8.0
+"""Distance from the coarse place within which edges are looked for."""
 _SQUEEZE = 0.25
 """Largest share of its diameter by which a tilted rim may look narrower."""
 _STARTS = ((0.0, 0.0), (0.35, 0.0), (-0.35, 0.0), (0.0, 0.35), (0.0, -0.35))
@@ -25,7 +26,9 @@ all sides and the best result counts."""
 _SOFT_PX = 0.3
 """Distance from which on an edge point counts less: some belong to a wall or to a chamfer."""
 _SIZE_SIGMA = 0.02
+"""Standard deviation of a rim's size about the drawing's, relative."""
 _FEWEST_EDGES = 24
+"""Of 64 directions. Fewer edge points than this leave the tilt to chance."""
 _UNKNOWNS = 4
 """Unknowns of each rim: a move in three directions and its growth, in radii."""
 

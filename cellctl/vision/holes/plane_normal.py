@@ -15,6 +15,7 @@ from cellctl.vision.holes.correspondence import Expectation
 from cellctl.vision.registration.rigid_fit import kabsch, on_a_line
 
 _SAME_AXIS = float(np.cos(np.radians(1.0)))
+"""Axes nearer to each other than 1° count as one: the fit of a rim needs its plane to a degree."""
 
 
 def possible_normals(

@@ -21,6 +21,7 @@ _EPIPOLAR_PX = 7.0
 """Distance from the epipolar line: candidates are found at quarter scale, to one or two pixels of
 the full image."""
 _RADIUS_MARGIN = 0.12
+"""Relative margin of the radii that are voted for: voting finds a radius to a tenth."""
 _SMALLEST_PX = 3.0
 """Smaller circles have too few edge pixels to vote."""
 

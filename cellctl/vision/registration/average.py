@@ -10,6 +10,7 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
 
 _MAX_SCATTER_M = 0.1e-3
+"""Frames of an unmoved scene scatter by some micrometres. What is off by this has moved."""
 _SYSTEMATIC_SHARE = 0.65
 """Share of one frame's standard deviation that more frames do not average away: the texture of the
 rim and the errors of the light model are the same in every frame. Measured on rendered machined

@@ -65,9 +65,10 @@ class MeasuredPoints:
         )
 
     def off_their_drawing(self, holes: Sequence[Hole]) -> Self:
-        """The same, as uncertain as the holes of the part lie off their drawing.
+        """These points with the manufacturing tolerance of their holes in the covariances.
 
-        At least three points that are not on a line, in the order of ``holes``.
+        A hole that lies off its drawing moves along x and y of the part, not along z: its rim stays
+        in the face. There must be at least three points that are not on a line.
         """
         sigmas_m = {hole.name: hole.position_sigma_m for hole in holes}
         rotation, _ = kabsch(self.nominal_m, self.measured_m)
@@ -77,7 +78,7 @@ class MeasuredPoints:
         return replace(self, covariances_m2=self.covariances_m2 + spread)
 
     def as_seen(self, seen: "MeasuredPoints") -> Self:
-        """The same points, as uncertain as in ``seen``, which has at least these."""
+        """These points with the covariances that they have in ``seen``, which holds them all."""
         rows = [seen.names.index(name) for name in self.names]
         return replace(self, covariances_m2=seen.covariances_m2[rows])
 
@@ -89,7 +90,7 @@ class MeasuredPoints:
         )
 
     def without(self, index: int) -> "MeasuredPoints":
-        """All but one."""
+        """The points without the one of this index."""
         keep = [i for i in range(len(self.names)) if i != index]
         return replace(
             self,

@@ -27,8 +27,12 @@ RESIDUAL_LIMIT_M = 0.2e-3
 """Largest distance of a measured hole from its registered nominal position."""
 
 _OUTLIER_SIGMAS = 5.0
+"""A hole is left out only when it contradicts the others by this many standard deviations. Leaving
+holes out until the rest fits would prove anything."""
 _MOVEMENT_SIGMAS = 5.0
+"""A movement of the heads beyond this is not believed; see ``_movement``."""
 _OUTLIER_MIN_HOLES = 5
+"""Least number of holes of which one may be left out."""
 _ANY_MOVEMENT = 1e4
 """Factor on the variance of ``c1_T_c2`` with which a movement of any size is believed."""
 _ONE_PIECE_M = 0.05e-3
@@ -215,7 +219,11 @@ class _Movement:
 
 
 def _movement(points: MeasuredPoints, fit: Registration, transfer_covariance: Array) -> _Movement:
-    """What the registration leaves of the points tells of the heads."""
+    """The most likely error of ``c1_T_c2``, from the residuals of the registration.
+
+    A Kalman update from zero: ``transfer_covariance`` is what is known of the error before, the
+    holes of head II are what tells of it.
+    """
     shared = _carried(points, points, fit).reshape(-1, 6)
     spread = shared @ transfer_covariance @ shared.T + block_diag(*points.covariances_m2)
     gain = np.linalg.solve(spread, shared @ transfer_covariance).T

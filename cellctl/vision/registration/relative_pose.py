@@ -23,10 +23,11 @@ _PART_1, _PART_2, _HEADS = slice(0, 6), slice(6, 12), slice(12, 18)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RelativePose:
-    """Where one part is in the other."""
+    """The pose of one part in the other."""
 
     part_1_T_part_2: UncertainPose
-    """With the uncertainties that are stated, of the holes and of the heads' movement."""
+    """Its covariance follows from the uncertainties that are stated, of the holes and of the heads'
+    movement."""
     movement: Array
     """Estimated error of ``c1_T_c2``, shape (6,), in the order of ``UncertainPose``."""
     misfit: ChiSquare
@@ -34,7 +35,8 @@ class RelativePose:
 
     @property
     def cautious(self) -> UncertainPose:
-        """The same, more uncertain where what is stated does not explain the holes."""
+        """The pose with a covariance that has grown where what is stated does not explain the
+        holes."""
         plain = self.part_1_T_part_2
         return UncertainPose(plain.pose, plain.covariance * self.misfit.growth)
 

@@ -26,7 +26,8 @@ _LOST = 1.4
 _SHRINK = 0.3
 """Share of the mean over all directions in the estimate of each."""
 _CHANCE = 2.1
-"""By chance alone, sums over a few arcs reach this multiple of what independent errors give."""
+"""Sums over a few arcs reach this multiple of what independent errors give by chance alone. Only
+what exceeds it widens the covariance."""
 
 _STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
 _KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
@@ -47,7 +48,7 @@ class RatedFit:
 
     @property
     def shapes(self) -> tuple[RimShape, ...]:
-        """In each image."""
+        """The geometry of the rim in each image."""
         return self.fit.shapes
 
 

@@ -16,17 +16,21 @@ from cellctl.vision.camera.plane_patch import PlanePatch
 from cellctl.vision.rim.noise import median, robust_sigma
 
 _AZIMUTHS = 64
+"""Rays round the rim. A rim of 20 px has a circumference of 126 px: two pixels to a ray."""
 _STEP_PX = 0.5
+"""Distance of the samples along a ray."""
 _TRIALS = 70
 """Random triples of edge points. With half of the points on the rim one triple in eight is clean:
 that none of 70 is happens once in ten thousand rims."""
 _FEWEST = 10
+"""Least number of edge points of a circle."""
 _REFINEMENTS = 3
 _TOLERANCE_PX = 0.8
+"""An edge point within this distance of a circle agrees with it."""
 _WEAKEST = 0.2
 """Edges below this share of the typical strength do not count."""
 _LEAST_SLOPE_GREY = 0.4
-"""In a step along the ray; less is noise."""
+"""Least change of grey in one step along a ray: less is noise."""
 
 _ANGLES: Array = np.linspace(0.0, 2.0 * np.pi, _AZIMUTHS, endpoint=False)
 _DIRECTIONS: Array = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])

@@ -16,7 +16,7 @@ _CHANCE = 1.6
 
 
 def with_image_scales(pairs: Sequence[RimPair]) -> list[RimPair]:
-    """The same rims with covariances times the scales of their images."""
+    """These rims with their covariances multiplied by the scales of their images."""
     left = image_scale([pair.left for pair in pairs])
     right = image_scale([pair.right for pair in pairs])
     return [_scaled(pair, left, right) for pair in pairs]

@@ -14,8 +14,10 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim.shape import Border, RimPixels, RimShape, wall_depth
 
 _LEAST_SHARE = 1e-5
+"""Coverage below which a pixel counts as collecting nothing of a surface; keeps the quotient in
+``_middle`` finite."""
 _FADE = 0.4
-"""Light in a bore falls to 1/e at about 1.25 diameters."""
+"""Decay of the light on a wall with depth, 1/radii: it falls to 1/e at about 1.25 diameters."""
 _WALL_GREY = 40.0
 """Standard deviation of the light of a wall about an even fade at that rate."""
 _THREAD_BAND = 0.15

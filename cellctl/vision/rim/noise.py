@@ -25,15 +25,18 @@ _LEAST_GREY = 0.35
 _BRIGHT, _DARK = 0.95, 0.05
 """Shares outside the rim from which on a pixel belongs to one side."""
 _CLIP_SIGMAS = 4.0
+"""Residuals are clipped here before strokes are told from pixels: a scratch is no stroke."""
 _LEAST_STROKE_GREY = 0.3
 """Lower strokes are not worth the work."""
 _FEWEST_IN_STROKE, _FEWEST_STROKES = 4, 8
+"""A stroke is judged by so many pixels at least, and the height of strokes by so many of them."""
 
 _LAY_REACH_PX = 14.0
 """Distance beyond the rim up to which the lay of the face is looked for."""
 _ANISOTROPY = 0.2
 """From this share of directed gradients on there is a lay; noise alone stays below a tenth."""
 _GRADIENT_CLIP = 3.0
+"""Gradients are clipped at this multiple of their median; see ``surface_lay``."""
 _ALONG = 0.3
 """Change of a stroke along its length over one radius, as a share of its height."""
 

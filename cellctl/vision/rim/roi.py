@@ -26,6 +26,8 @@ _MIN_SUPPORT = 0.55
 """Share of the circumference that must show an edge. A scratch or a reflex may hide nearly half of
 a rim; below this an arc of something else would pass for one."""
 _BORDER_PX = 2.0
+"""Distance kept from the border of the image: the samples of a patch are interpolated and
+blurred."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,6 +31,7 @@ _SIGNIFICANT_GAIN = 15.0
 _RIDGE = 1e-6
 """Keeps terms that the fit already models from counting as evidence."""
 _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
+"""Widths of a ring that is tested for."""
 
 _START_BLUR_PX = 1.0
 _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
@@ -41,6 +42,7 @@ _HINT_GAIN = 4.0
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
+"""Prior of the blur about the first guess, and about what other rims of the image have shown."""
 _WALL_M, _WALL_SIGMAS = 2e-3, 4.0
 """Depth of a wall that may be all that there is, and its standard deviation over it."""
 _TURNS_GREY = 15.0

@@ -37,7 +37,10 @@ _LOWER_EDGE = 0.03
 ended without regard to that edge left its way to the next ones: one fit in five then took seven to
 thirty rounds instead of one in twenty (24 pairs of images of three assemblies)."""
 _MAX_STEP_PX = 0.7
+"""Longest step of a centre or a radius; see ``_moved``."""
 _MAX_DAMPING = 1e4
+"""Beyond it a step is taken although it makes the cost greater: what is left of that is
+rounding."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +53,7 @@ class RimFit:
 
     @property
     def shapes(self) -> tuple[RimShape, ...]:
-        """In each image."""
+        """The geometry of the rim in each image."""
         return tuple(view.shape(self.solution.vector) for view in self.problem.views)
 
     def bic(self) -> float:

@@ -19,9 +19,11 @@ from cellctl.vision.rim.selection import (
 from cellctl.vision.rim.shape import RimShape
 
 _LEAST_RING_PX = 2.0
+"""Width that the band of pixels allows for a ring, however narrow it is thought to be."""
 _FLOOR_PX = 5e-4
 """Lens model and pixel response limit every centre to about this."""
 _MIN_CONTRAST_GREY = 8.0
+"""Least step of the grey between inside and outside of a rim."""
 _MAX_MOVE_PX = 2.5
 """A fit that ends farther than this from the located edges has found something else."""
 _RINGED_RADIUS_TOLERANCE = 0.035
