@@ -126,8 +126,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         return link_facts({"CMD": self._command.channel, "STA": self._state.channel})
 
     def round_trips_s(self) -> tuple[float, ...]:
-        """Round trips of this session's commands: the protocol has no question that does
-        nothing."""
+        """Round trips of this session's commands; no question of the protocol does nothing."""
         return tuple(self._command.round_trips_s)
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
