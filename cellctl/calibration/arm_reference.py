@@ -20,7 +20,8 @@ LEAST_TARGETS = 3
 MOVED_M = 0.2e-3
 """Less than this is no fault: the temperature of arm and floor moves a target so far."""
 _SIGMAS = 5.0
-"""Of a target's displacement. With six targets one check of 10 000 is a false alarm."""
+"""Smallest displacement that counts as a fault: the temperature of arm and floor moves a target by
+as much."""
 _REPEATABILITY_M = 2e-5
 """Standard deviation of a coordinate of the arm, each time that it comes to the place."""
 

@@ -18,9 +18,9 @@ class JudgedInsertion:
     """Whether a part with this verdict may go on."""
     checks: Checks
     fault: CellError | None
-    """None for a good insertion."""
+    """Why the insertion is not good; None for a good one."""
     record: Mapping[str, Any]
-    """All of it as plain data."""
+    """Everything that was judged, as plain data."""
 
 
 InsertionJudge = Callable[[Path, Path], JudgedInsertion]

@@ -19,7 +19,8 @@ from cellctl.errors.vision import ImageBlack, ImageSaturated
 from cellctl.interfaces.stereo_camera import Image
 
 _SUSPICIOUS = (1, 4)
-"""After so many pairs without the board, when they are the majority, see whether it is another."""
+"""Numbers of pairs without the board after which, as long as they are the majority, the images are
+examined for another board."""
 _BLACK_LEVEL = 16
 _FULL_LEVEL = 254
 _FULL_ALWAYS, _FULL_SUSPECT = 0.7, 0.2

@@ -14,7 +14,8 @@ from cellctl.vision.registration.rigid_fit import register
 
 _MIN_DISCS = 4
 _MAX_RMS_M = 2e-3
-"""Beyond this the discs are confused or it is another board."""
+"""Largest rms distance of the discs from the board. Beyond it discs are confused, or it is another
+board."""
 _OUTLIER_CHI2 = 25.0
 """Squared normalised residual (3 coordinates) of a disc that does not belong: p below 2e-5."""
 

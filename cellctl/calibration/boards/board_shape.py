@@ -31,7 +31,8 @@ PRINT_SIGMA = 2e-4
 CORNER_SIGMA_M = 3e-5
 """Prior of a coordinate of a printed corner: what feed and paper of a printer leave."""
 _COMES_BACK = 0.5
-"""Between 0 and 1, the shares of a mode that a mean over all turns can leave."""
+"""Share of a mode from which on it counts as one that comes back. The mean over all turns leaves a
+mode either whole (1) or not at all (0); this lies between them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -14,8 +14,8 @@ from cellctl.interfaces.stereo_camera import Image
 _SEARCH_PX = (1000, 2000)
 """Longer side of the reduced images in which circles are searched."""
 _NEIGHBOURHOODS = (0.15, 0.05, 0.4)
-"""Of the longer side: what a pixel is compared with must be wider than a circle, and narrower than
-the changes of the light."""
+"""Sizes of the surroundings that a pixel is compared with, as shares of the longer side: wider than
+a circle, and narrower than the changes of the light."""
 _SMALLEST_PX = 3.0
 """Radius in the reduced image; smaller spots have no shape."""
 _THINNEST = 0.3
@@ -23,7 +23,8 @@ _THINNEST = 0.3
 _ROUGHEST = 0.12
 """Rms distance of a contour from its ellipse over the minor half axis, with a pixel for free."""
 _SAME_PLACE = 0.3
-"""Of the pitch in the image: how far circles may be from where a plane board would have them."""
+"""Largest distance of a circle from where a plane board would have it, as a share of the pitch in
+the image."""
 _ANY_SIZE = (0.25, 4.0)
 """Area of a circle over that of the typical one; perspective does not change it by more."""
 
@@ -33,11 +34,11 @@ class FoundGrid:
     """The grid in one image."""
 
     rims: Rims
-    """In the order of the board, to about a pixel."""
+    """The rims in the order of the board, to about a pixel."""
     bright: bool
     """Circles are brighter than the board."""
     mirrored: bool
-    """Only a mirrored image shows it in this order."""
+    """True when only a mirrored image shows the board in this order."""
 
 
 def find_circles(image: Image, board: CalibrationBoard) -> FoundGrid | None:

@@ -154,7 +154,8 @@ def _without_strays(corners: Corners, board: CalibrationBoard) -> Corners:
 
 
 def _thorough() -> cv2.aruco.DetectorParameters:
-    """For boards that are far, tilted or out of focus: slower, and with markers of all sizes."""
+    """Parameters for boards that are far, tilted or out of focus: slower, and with markers of all
+    sizes."""
     parameters = cv2.aruco.DetectorParameters()
     parameters.adaptiveThreshWinSizeMax = 53
     parameters.minMarkerPerimeterRate = 0.01

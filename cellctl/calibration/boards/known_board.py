@@ -19,7 +19,8 @@ from cellctl.errors.calibration import KnownBoardDiffers
 from cellctl.geometry.pose import Array
 
 _STAYS = 0.05
-"""Of the prior of an unknown board: how far a known one may have changed, 10 µm of bow."""
+"""How far a known board may have changed, as a share of the prior of an unknown one: 10 µm of
+bow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +40,8 @@ class KnownBoard:
     corners_m: Array
     """Shape (n, 3)."""
     found: FoundShape | None
-    """None in records of older versions: the corners are a start, and no more is known of them."""
+    """The shape that was found; None in records of older versions, whose corners are only a
+    start."""
 
 
 def found_shape_to_record(found: FoundShape | None) -> dict[str, Any]:

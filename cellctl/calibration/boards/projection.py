@@ -78,7 +78,7 @@ def project(camera: Array, points_m: Array) -> Projection:
 
 
 def _project_by_opencv(camera: Array, points_m: Array) -> Projection:
-    """The same for lenses of more than five terms; slower, because it also turns the points."""
+    """``project`` for lenses of more than five terms; slower, because it also turns the points."""
     model = camera_model(camera)
     pixels, jacobian = cv2.projectPoints(
         points_m, np.zeros(3), np.zeros(3), model.camera_matrix, model.distortion

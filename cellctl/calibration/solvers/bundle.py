@@ -37,7 +37,7 @@ class LinearImage:
     by_shared: Array
     """Shape (n, 2, s)."""
     by_view: Array
-    """By shift (m) and turn (rad) of the board in the camera frame, shape (n, 2, 6)."""
+    """Derivative by shift (m) and turn (rad) of the board in the camera frame, shape (n, 2, 6)."""
 
 
 S = TypeVar("S")
@@ -48,7 +48,7 @@ class BundleProblem(Protocol[S]):
 
     @property
     def name(self) -> str:
-        """For messages, such as "stereo"."""
+        """Name of the adjustment in messages, such as "stereo"."""
 
     @property
     def prior(self) -> Array:
@@ -77,7 +77,7 @@ class BundleResult(Generic[S]):
     """Covariance of the shared unknowns, shape (s, s), from how the views disagree
     (``view_weights``)."""
     shift_sigmas: Array
-    """By how much the shared unknowns move when a view is left out: root mean square in stated
+    """How much the shared unknowns move when each view is left out: root mean square in stated
     standard deviations, shape (views,)."""
 
 
@@ -86,7 +86,7 @@ class _Normal:
     """Normal equations by view, so that the poses can be eliminated and views weighed."""
 
     prior: Array
-    """Of the shared unknowns, shape (s,)."""
+    """Inverse prior variance of each shared unknown, shape (s,)."""
     prior_gradient: Array
     shared: Array
     """Shape (views, s, s)."""

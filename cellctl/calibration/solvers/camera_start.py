@@ -24,12 +24,12 @@ _MIN_IMAGES = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CameraStart:
-    """Where an adjustment of a camera begins."""
+    """The values at which the adjustment of a camera begins."""
 
     camera: Array
     """Nine numbers of ``CAMERA_PARAMETERS``."""
     camera_T_board: tuple[Array, ...]
-    """Of each image, 4 x 4, also of those that do not fit."""
+    """Pose of the board in each image, 4 x 4, also in images that do not fit."""
     fits: NDArray[np.bool_]
     """False for an image that one camera cannot have taken together with the others."""
     images: tuple[Corners, ...]
@@ -88,7 +88,7 @@ def _start(
 def _centred(
     images: Sequence[Corners], board: CalibrationBoard, circles: Circles, start: CameraStart
 ) -> list[Corners]:
-    """Where the centres of the circles are seen, from the centres of their ellipses."""
+    """Where the centres of the circles are seen, computed from the centres of their ellipses."""
     centred = []
     for corners, pose in zip(images, start.camera_T_board, strict=True):
         offsets = centre_offsets(

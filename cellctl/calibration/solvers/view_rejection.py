@@ -30,7 +30,7 @@ Mask = NDArray[np.bool_]
 _BAD_VIEW = 2.5
 """A view is bad when its rms is so many times the median view's."""
 MAX_REJECTED_RATIO = 0.2
-"""More bad views than this mean that something is wrong with all of them."""
+"""Largest share of bad views. More mean that something is wrong with all of them."""
 
 S = TypeVar("S")
 
@@ -56,20 +56,20 @@ class RobustAdjustment(Generic[S]):
     """The adjustment of the good views, and how all views fit it."""
 
     result: BundleResult[S]
-    """Of the good views alone."""
+    """The adjustment of the good views alone."""
     good: Mask
     """Shape (views,)."""
     residuals: tuple[tuple[Array, ...], ...]
-    """Of all views, each with its board at the best pose, px."""
+    """Residuals of all views, each with its board at the best pose, px."""
 
     @property
     def view_rms_px(self) -> Array:
-        """Of all views, both axes together, shape (views,)."""
+        """Root mean square of the residuals of each view, both axes together, shape (views,)."""
         return _view_rms(self.residuals)
 
     @property
     def shift_sigmas(self) -> list[float | None]:
-        """By how much the solution moves without each view; None for those left out."""
+        """How much the solution moves without each view; None for those that were left out."""
         shifts = iter(self.result.shift_sigmas)
         return [float(next(shifts)) if used else None for used in self.good]
 

@@ -21,8 +21,8 @@ from cellctl.errors.calibration import SolveFailed
 from cellctl.geometry.pose import Array
 
 _LEAST_REST = 0.05
-"""Of the information in any direction, what must be left without a view. One that alone determines
-an unknown would move it without bounds."""
+"""Share of the information in any direction that must be left without a view. A view that alone
+determines an unknown would move it without bounds."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -30,7 +30,7 @@ class WeighedViews:
     """What the views say of the shared unknowns."""
 
     covariance: Array
-    """Of the shared unknowns, shape (s, s)."""
+    """Covariance of the shared unknowns, shape (s, s)."""
     shift_sigmas: Array
     """Root mean square move of the unknowns without each view, in standard deviations of
     ``covariance``, shape (views,)."""

@@ -33,7 +33,8 @@ class BoardPoses:
     """Shape (views, 3)."""
 
     def views_moved(self, views: Array) -> Self:
-        """After a step of shape (views, 6): shift in m, turn as a rotation vector in rad."""
+        """These views after a step of shape (views, 6): shift in m, turn as a rotation vector in
+        rad."""
         turns = Rotation.from_rotvec(views[:, 3:]).as_matrix()
         return replace(
             self,

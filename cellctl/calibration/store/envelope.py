@@ -40,7 +40,7 @@ class StoredCalibration:
     valid_until: datetime
     software: str
     serial_number: str
-    """Of the device that was calibrated; empty where there is none."""
+    """Serial number of the device that was calibrated; empty where there is none."""
 
     @property
     def id(self) -> str:

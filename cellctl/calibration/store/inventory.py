@@ -21,7 +21,7 @@ class InventoryEntry:
     problem: str
     """Why it may not be used; empty when it may."""
     identity: str = ""
-    """By which runs name it; empty when it cannot be read."""
+    """The id by which runs name it; empty when it cannot be read."""
 
 
 def inventory(store: CalibrationStore, now: datetime) -> tuple[InventoryEntry, ...]:

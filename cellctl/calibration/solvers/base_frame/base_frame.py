@@ -73,7 +73,7 @@ class BaseFrameResult:
     reference: ArmReference | None = None
     """Targets in the middle of both arcs, to notice later that the arm was moved."""
     axes: tuple[AxisFit, AxisFit] | None = None
-    """For the picture only, not in the record."""
+    """The two axes as fitted, for the picture; they are not in the record."""
 
     @property
     def passed(self) -> bool:

@@ -43,8 +43,8 @@ _OUTLIER_CHI2 = 40.0
 _LEAST_KEPT = 0.8
 """Share of the poses. With more gross errors nobody knows which poses are the good ones."""
 _MAX_START = 0.04
-"""Of the board's distance: the closed form puts the board this far off its place only with data of
-another setup, or of a board of another size."""
+"""Distance by which the closed form may leave the board off its place, as a share of its distance.
+More comes only from data of another setup, or of a board of another size."""
 
 
 def calibrate_hand_eye(

@@ -23,18 +23,19 @@ from cellctl.geometry.uncertain import inverse_jacobian, perturbed
 _SCALE_SIGMA = 1.0
 """Standard deviation of the logarithm of each scale: what is stated is good to a factor of e."""
 _FREEDOM = 30.0
-"""Of Student's distribution of a pose's errors."""
+"""Degrees of freedom of Student's distribution, which the errors of the poses are taken from."""
 _STEP, _MOST_STEPS = 2.0**0.5, 12
 """Scales are found in steps of this factor: finer ones move the solution by far less than it is
 uncertain by, and the coarse ones make the result the same to the last digit for any order of the
 poses."""
 _SEARCH_ROUNDS = 12
-"""After so many rounds the scales stay, lest two neighbours take turns for ever."""
+"""Rounds after which the scales stay as they are: two neighbouring values could take turns for
+ever."""
 _MOST_ROUNDS = 100
 _SETTLED = 1e-7
 """Largest step that is left, in standard deviations of what is solved for."""
 _MAX_CONDITION = 1e12
-"""Beyond it no digit of the covariance is right."""
+"""Condition number beyond which no digit of the covariance is right."""
 
 
 Steps = tuple[int, ...]
@@ -62,11 +63,11 @@ class HandEyeAdjustment:
     x: RigidTransform
     z: RigidTransform
     covariance: Array
-    """Of X, then of Z, shape (12, 12)."""
+    """Covariance of X, then of Z, shape (12, 12)."""
     chi2_ratio: float
     """Squares in units of the stated noise over their expectation."""
     squares: Array
-    """Of each pose's residual in units of the noise that was found, shape (n,)."""
+    """Square of each pose's residual in units of the noise that was found, shape (n,)."""
     scales: NoiseScales
     stated: tuple[float, float]
     """Expected rms distance (m) and angle (rad) of the board by the stated noise."""
@@ -79,7 +80,7 @@ class _Linearised:
     raw: Array
     """Measured against predicted camera_T_board, shape (n, 6)."""
     design: Array
-    """By the twelve unknowns, shape (n, 6, 12)."""
+    """Derivative of the residuals by the twelve unknowns, shape (n, 6, 12)."""
     parts: Array
     """Stated covariance that robot positions, robot angles and camera add, shape (3, n, 6, 6)."""
 
@@ -169,7 +170,8 @@ def _linearised(
 
 
 def _by_first(first: RigidTransform, second: RigidTransform) -> Array:
-    """As ``product_jacobians``, for many poses at once: of a product by its first factor."""
+    """Derivative of products by their first factor: ``product_jacobians`` for many poses at
+    once."""
     arms = np.atleast_2d((first * second).translation - first.translation)
     jacobians = np.tile(np.eye(6), (len(arms), 1, 1))
     jacobians[:, :3, 3:] = -_skews(arms)
@@ -177,7 +179,8 @@ def _by_first(first: RigidTransform, second: RigidTransform) -> Array:
 
 
 def _by_second(first: RigidTransform) -> Array:
-    """The same by the second factor, which only the rotation of the first one turns."""
+    """Derivative of products by their second factor, which only the rotation of the first one
+    turns."""
     rotations = first.rotation.as_matrix().reshape(-1, 3, 3)
     jacobians = np.zeros((len(rotations), 6, 6))
     jacobians[:, :3, :3] = jacobians[:, 3:, 3:] = rotations
@@ -249,7 +252,7 @@ def _squares(here: _Linearised, scales: NoiseScales) -> Array:
 
 
 def _covariance(here: _Linearised, shares: Array, scales: NoiseScales) -> Array:
-    """Of the solution that these weights give, for the noise that was found."""
+    """Covariance of the solution that these weights give, for the noise that was found."""
     errors = here.covariances(scales)
     weights = np.linalg.inv(errors) * shares[:, None, None]
     weighted = weights @ here.design

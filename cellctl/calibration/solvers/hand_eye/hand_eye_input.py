@@ -74,7 +74,7 @@ class HandEyeFile(InputFile):
 
     setup: Setup | None = None
     camera_id: str | None = None
-    """Of the intrinsics in use; stands in the result, too."""
+    """Identity of the intrinsics in use; it stands in the result, too."""
     poses: tuple[HandEyeEntry, ...]
     robot_sigma_mm: float = 0.05
     robot_sigma_deg: float = 0.005

@@ -14,9 +14,11 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 
 _RESIDUAL_RATIO = 3.0
-"""Of the expected residual: stated noise is seldom right to better than a factor of two."""
+"""Largest residual over the expected one: stated noise is seldom right to better than a factor of
+two."""
 _SIGMA_RATIO = 1.0
-"""Of the expected residual of one pose: more poses must tell more than one does."""
+"""Largest standard deviation of the result over the expected residual of one pose: many poses must
+tell more than one does."""
 _SCALE, _SCALE_SIGMAS = 0.01, 4.0
 """Largest difference of the board's lengths from the robot's, where the poses tell it so well."""
 

@@ -18,12 +18,12 @@ from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc, pose_to_xyzabc
 
 _FITS = 0.01
-"""Of its distance: a board whose place scatters by less belongs to these poses, whatever the arm's
-accuracy."""
+"""Scatter of the board's place, as a share of its distance, below which it belongs to these poses,
+whatever the arm's accuracy."""
 _SCALE = 0.01
 """Lengths that differ by less are not worth a word."""
 _BETTER = 10.0
-"""So many times better than as given."""
+"""A correction is told when the poses fit so many times better with it than as given."""
 _TURNED_RAD = np.radians(2)
 
 Change = Callable[[RigidTransform], RigidTransform]

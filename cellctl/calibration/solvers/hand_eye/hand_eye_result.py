@@ -78,8 +78,8 @@ class HandEyeResult:
     warnings: tuple[str, ...]
     method: str = "closed form (Park), then maximum likelihood with robot and camera covariance"
     camera_id: str | None = None
-    """Of the intrinsics that the poses of the board were measured with; None where it is unknown.
-    The result holds for these alone: it has absorbed their errors."""
+    """Identity of the intrinsics that the poses of the board were measured with; None where it is
+    not known. The result holds for these alone: it has absorbed their errors."""
 
     @property
     def passed(self) -> bool:

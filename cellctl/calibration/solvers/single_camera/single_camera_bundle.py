@@ -26,10 +26,10 @@ _RADIAL = [4, 5, 8]
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class CameraBundle(BoardPoses):
-    """All unknowns."""
+    """All unknowns of the calibration of one camera."""
 
     camera: Array
-    """As of ``projection``."""
+    """Numbers of the camera, in the order of ``projection``."""
     shape: Array
     """Parameters of the board's shape."""
 

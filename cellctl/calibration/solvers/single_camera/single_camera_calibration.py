@@ -56,8 +56,9 @@ class SingleCameraLimits:
     rms_px: float = 0.25
     held_out_px: float = 0.3
     focal_sigma_ratio: float = 2e-3
-    """Of the focal length. Focal length and distance go together: what stays of an error within the
-    depth of the views is smaller by the ratio of that depth to the distance."""
+    """Largest standard deviation of the focal length over it. Focal length and distance go
+    together: what stays of an error within the depth of the views is smaller by the ratio of that
+    depth to the distance."""
     rejected_ratio: float = MAX_REJECTED_RATIO
 
 

@@ -47,7 +47,7 @@ class CameraViewResidual:
     used: bool
     """False for a view that was left out; its residual is that of its board at its best pose."""
     shift_sigmas: float | None = None
-    """Without this view the unknowns of the camera move by so much: root mean square, in stated
+    """How much the unknowns of the camera move without this view: root mean square, in stated
     standard deviations. None for a view that was left out, and in records of older versions."""
 
 
@@ -65,9 +65,9 @@ class SingleCameraResult:
     sigma: Array
     """Standard deviations of the camera's ``CAMERA_PARAMETERS``, shape (4 + terms,)."""
     rms_px: float
-    """Of the corners of all views that were used, both axes together."""
+    """Residual of the corners of all views that were used, both axes together."""
     held_out_px: float | None
-    """The same of views that the calibration has not seen; None with too few views."""
+    """Residual of views that the calibration has not seen; None with too few views."""
     sigma_px: float
     """Standard deviation of a corner coordinate."""
     checks: Checks

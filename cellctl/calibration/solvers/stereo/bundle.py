@@ -23,10 +23,10 @@ from cellctl.geometry.uncertain import skews
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class BundleState(BoardPoses):
-    """All unknowns."""
+    """All unknowns of the calibration of a head."""
 
     left: Array
-    """As of ``projection``."""
+    """Numbers of the left camera, in the order of ``projection``."""
     right: Array
     rotation: Array
     """x_right = rotation @ x_left + translation_m."""

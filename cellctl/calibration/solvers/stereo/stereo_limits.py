@@ -18,7 +18,7 @@ from cellctl.vision.camera.stereo_head import StereoHead
 _CORNER_PX = 0.1
 """Error of one coordinate of a corner that a usable calibration may have."""
 _BASELINE_RATIO = 3e-4
-"""Of the baseline: 0.05 mm of the paper's 180 mm."""
+"""Largest standard deviation of the baseline over it: 0.05 mm of the paper's 180 mm."""
 _KNOWN_RATIO = 0.05
 """Lens and mount keep what their drawings say this well; a board that is taken for another, or
 squares counted for millimetres, is further off."""
@@ -62,9 +62,10 @@ class StereoLimits:
     rms_px: float = 0.25
     rejected_ratio: float = MAX_REJECTED_RATIO
     held_out_m: float | None = None
-    """None for what the geometry allows."""
+    """Largest error of corners that were held out; None for what the geometry of the head
+    allows."""
     baseline_sigma_m: float | None = None
-    """None for a share of the baseline."""
+    """Largest standard deviation of the baseline; None for a share of the baseline."""
     known: KnownGeometry = field(default_factory=KnownGeometry)
 
     def held_out_limit_m(self, head: StereoHead, distances_m: Array) -> float:

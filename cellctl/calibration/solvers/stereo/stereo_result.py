@@ -50,7 +50,7 @@ class ViewResidual:
     used: bool
     """False for a view that was left out; its residuals are those of its board at its best pose."""
     shift_sigmas: float | None = None
-    """Without this view the unknowns of the head move by so much: root mean square, in stated
+    """How much the unknowns of the head move without this view: root mean square, in stated
     standard deviations. None for a view that was left out, and in records of older versions."""
 
 

@@ -29,10 +29,10 @@ _MAX_BAD = 0.3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StereoStart:
-    """Where the adjustment of a head begins."""
+    """The values at which the adjustment of a head begins."""
 
     views: list[BoardView]
-    """With corners in one order left and right."""
+    """The views, with their corners in one order left and right."""
     state: BundleState
     plausible: Mask
     """Views whose two pictures agree with those of the others, shape (views,)."""

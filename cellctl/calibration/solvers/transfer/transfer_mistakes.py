@@ -10,7 +10,7 @@ from cellctl.geometry.pose import MM, pose_error
 from cellctl.geometry.uncertain import UncertainPose
 
 _SAME_M = 1e-6
-"""Below the noise of any head: two readings that agree so well are one that was copied."""
+"""Two readings that differ by less are one that was copied: the noise of any head is greater."""
 
 
 def require_unmistaken(
