@@ -29,8 +29,9 @@ from cellctl.vision.features.feature_file import FeatureFile
 _log = log.get(__name__)
 
 SHARE_OF_ONE_PART = 0.6
-"""Of the uncertainty of the deck in the frame. Frame and deck contribute alike, which would allow
-each 0.71; what is left is for the movement of the heads between them."""
+"""Share of the uncertainty of the deck in the frame that one part may have. Frame and deck
+contribute alike, which would allow each 0.71; what is left is for the movement of the heads between
+them."""
 SWING_RATIO = 2.0
 """A load that hangs on a spring pulls twice its mass times the acceleration when that begins."""
 LEVER_M = 1.0
@@ -48,7 +49,8 @@ class OpenRun:
     safe_point: SafePoint
     interruption: Interruption
     exposures: RunExposures
-    """Of the heads; found once, for parts that are measured in one light are compared."""
+    """Exposures of the heads, found once for a run: parts that are compared have to be measured in
+    one light."""
 
     @classmethod
     def of(cls, facts: RunFacts, services: CellServices, context: RunContext) -> Self:

@@ -18,7 +18,7 @@ class Ready:
 
 @dataclass(frozen=True, slots=True)
 class FrameMeasured(Ready):
-    """After step 10."""
+    """After step 10: the frame is measured."""
 
     frame: PartPose
     """The frame as measured by both heads."""
@@ -31,7 +31,7 @@ class FrameMeasured(Ready):
 
 @dataclass(frozen=True, slots=True)
 class DeckMeasured(FrameMeasured):
-    """After step 20."""
+    """After step 20: the deck is measured."""
 
     flange_T_deck: RigidTransform
     """How the deck is gripped."""

@@ -22,7 +22,8 @@ from cellctl.processes.deck_to_frame.roles import (
 
 
 def deck_moves(cell: CellConfig, recipe: DeckRecipe) -> Iterator[StatedMove]:
-    """Of a run, of the way back from wherever it may have ended, and of the procedures."""
+    """Every move of a run, of the way back from wherever it may have ended, and of the
+    procedures."""
     # Imported here: it loads what computes, which whoever only reads a cell file does not need.
     from cellctl.processes.deck_to_frame.procedures.stated_moves import procedure_moves
 

@@ -18,7 +18,8 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
 
 ASSUMED_PAYLOAD_KG = 200.0
-"""Where the cell file states no load. The identified payload is judged again at the stand-off."""
+"""Load to plan with where the cell file states none. The identified payload is judged again at the
+stand-off."""
 
 
 def plan_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:

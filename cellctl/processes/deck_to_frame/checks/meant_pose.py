@@ -38,6 +38,6 @@ def _slips(written: Sequence[float]) -> Iterator[list[float]]:
 
 
 def _within_a_turn(angle_deg: float) -> float:
-    """The same direction, above -180 and up to 180 degrees."""
+    """The same direction as an angle above -180 and up to 180 degrees."""
     turned = angle_deg % 360.0
     return turned - 360.0 if turned > 180.0 else turned

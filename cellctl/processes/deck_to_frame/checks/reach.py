@@ -114,7 +114,8 @@ def _measured_at(cell: CellConfig, main: str) -> RigidTransform | None:
 
 
 def _outside(recipe: DeckRecipe, box: Box) -> tuple[str, Array] | None:
-    """Where the flange would have to be outside of its box, in words and in m."""
+    """A place outside of its box where the flange would have to be, in words and in m; None where
+    there is none."""
     base_T_frame = pose_from_xyzabc(recipe.base_T_frame)
     deck_T_flange = pose_from_xyzabc(recipe.flange_T_deck).inv()
     for what, above_mm in (("seated", 0.0), ("at the stand-off", recipe.stand_off_mm)):

@@ -39,7 +39,8 @@ async def comply(attempt: Attempt, reading: Reading) -> Reading:
 
 
 async def check_lateral_load(attempt: Attempt) -> None:
-    """After a move of the guarded travel: give way where the samples of its end ask for it."""
+    """Called after each move of the guarded travel: give way where the samples of its end ask for
+    it."""
     law = attempt.plan.compliance
     if law is None:
         return
@@ -54,7 +55,8 @@ async def check_lateral_load(attempt: Attempt) -> None:
 
 
 async def resolve_early_contact(attempt: Attempt) -> float:
-    """After a touch above the seat, taken over: give way and go on; the travel reached.
+    """Called after a touch above the seat that was taken over: give way and go on; returns the
+    travel that is reached (m).
 
     Raises ``ContactEarly`` when the force along the approach stays: that is no pin. Touches that
     never end are one too.

@@ -108,7 +108,8 @@ async def travel_to_touch(attempt: Attempt) -> float:
 
 
 async def take_over(attempt: Attempt) -> None:
-    """After the touch stop: release the latches and watch the force of the creep instead."""
+    """Called after the touch stop: release the latches, and watch the force of the creep
+    instead."""
     # The guard first, and armed before the robot can move again: no motion without somebody who
     # watches.
     await attempt.guard.acknowledge()
@@ -123,7 +124,8 @@ def _at_pins(attempt: Attempt, trip: GuardTrip) -> bool:
 
 
 async def _touch_at_standstill(attempt: Attempt) -> float:
-    """At the end of the window a soft contact may press too little for the detector."""
+    """Travel of a contact that is found only at standstill: at the end of the window a soft contact
+    may press too little for the detector. Raises ``ContactLate`` without one."""
     settings = attempt.plan.settings
     reading = await _reading_or_touch(attempt)
     if reading is None:

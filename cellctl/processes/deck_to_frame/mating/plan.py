@@ -24,7 +24,8 @@ from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 READING_BAND_N = 1.2
 """The creep ends so far above F_t: tare and noise of a reading must not decide."""
 NOISE_BAND_N = 2.0
-"""So much the filtered force swings about its mean: creep keeps that far from the abort limit."""
+"""The filtered force swings about its mean by so much: the creep keeps that far from the abort
+limit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from cellctl.geometry.pose import Array
 
 
 class MatingPhase(Enum):
-    """Where a mating is."""
+    """The phases of a mating."""
 
     TARE = "tare at stand-off"
     FAST = "fast travel"
@@ -35,7 +35,7 @@ class MatingProgress:
     """Along the approach; NaN before the tare."""
     message: str = ""
     curve: ForceCurve | None = None
-    """With ``ENDED`` only, also when the mating failed."""
+    """The whole force curve; only with ``ENDED``, also when the mating failed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +63,7 @@ class GivingWay:
     """Before it."""
     move: LateralOffset
     total: LateralOffset
-    """After it, from the stand-off."""
+    """Displacement from the stand-off after the move."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +91,7 @@ class MatingResult:
     segment_m: float
     tare: Tare
     touch_travel_m: float
-    """Where the touch was detected."""
+    """Travel from the stand-off at which the touch was detected."""
     touch_force_n: float
     """Standstill reading after the touch stop."""
     creep: tuple[Reading, ...]
@@ -110,5 +110,5 @@ class MatingResult:
 
     @property
     def released(self) -> Reading | None:
-        """After relaxing; None for a false seat."""
+        """The reading after relaxing; None for a false seat."""
         return self.relaxing[-1] if self.relaxing else None

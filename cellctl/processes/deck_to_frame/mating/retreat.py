@@ -1,4 +1,5 @@
-"""After a fault of the mating: stops the arm and, where that is right, backs off from the frame."""
+"""What follows a fault of the mating: the arm is stopped and, where that is right, backs off from
+the frame."""
 
 from cellctl import log
 from cellctl.cell.guarded_motion.leaving import able_to_leave

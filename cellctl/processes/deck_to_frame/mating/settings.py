@@ -88,7 +88,7 @@ class MatingSettings:
     """Half length and half width of the mating face: tilt makes an edge touch first."""
     # The job programs offer steps of 0.5 mm (STEPMAX in docs/protocols/sjl-1.md).
     greatest_segment_m: float = 4e-4
-    """Below the step limit of the controller."""
+    """Longest single move; below the step limit of the controller."""
 
     settle_s: float = 0.5
     settle_timeout_s: float = 5.0

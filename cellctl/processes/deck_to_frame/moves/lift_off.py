@@ -21,7 +21,7 @@ _log = log.get(__name__)
 LIFT_M = 0.06
 SLOW_LIFT_M = 0.015
 SLOW_SPEED_M_S = 2e-3
-"""Of the stretch after the first: pins and edges are still near."""
+"""Speed of the stretch after the first: pins and edges are still near."""
 LOW_M = 0.03
 """A deck less than this above its seat is lifted before it goes anywhere else."""
 OVER_STATION_M = 0.1

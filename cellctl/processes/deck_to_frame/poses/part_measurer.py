@@ -38,13 +38,14 @@ class HeadGeometry:
     head_1: StereoHead
     head_2: StereoHead
     c1_T_c2: UncertainPose
-    """With the drift since the calibration in its covariance."""
+    """The transform between the heads, with the drift since its calibration in its covariance."""
     sway_m: float = 0.0
     """How far the arms that carry the heads sway in one picture: standard deviation, each axis."""
 
     @classmethod
     def of(cls, calibrations: CalibrationSet, settings: PoseCorrection) -> Self:
-        """As calibrated; ``c1_T_c2`` as uncertain as it is after the drift that may have been."""
+        """The geometry as calibrated, with ``c1_T_c2`` as uncertain as it is after the drift that
+        may have been."""
         drift = np.repeat([settings.heads_drift_mm * MM, np.radians(settings.heads_drift_deg)], 3)
         calibrated = calibrations.c1_T_c2
         c1_T_c2 = UncertainPose(calibrated.pose, calibrated.covariance + np.diag(drift**2))
@@ -131,7 +132,7 @@ class PartMeasurer:
         self._method = method
         self._reference = [head.robot.state().base_T_flange for head in cell.heads]
         self.seen: list[SeenPair] = []
-        """Of the measurement that goes on, or that has failed."""
+        """Images of the measurement that goes on, or that has failed."""
 
     def deck_in_frame(self, frame: PartPose, deck: PartPose) -> RelativePose:
         """``M_T_D`` of two parts that these heads have measured."""

@@ -21,7 +21,8 @@ class SeatError:
     error: Array
     """Seat minus measured, shape (6,): x, y, z in m and rx, ry, rz in rad, in the axes of M."""
     covariance: Array
-    """Of the measured deck in the frame, shape (6, 6), in the order of ``UncertainPose``."""
+    """Covariance of the measured deck in the frame, shape (6, 6), in the order of
+    ``UncertainPose``."""
     offsets_mm: Mapping[str, float]
     """Lateral distance of each judged hole from its place, by the name of the hole."""
     offset_uncertainties_mm: Mapping[str, float]
@@ -29,7 +30,8 @@ class SeatError:
 
     @property
     def gap_mm(self) -> float:
-        """Between deck and frame in the middle of the face; positive when the deck stands off."""
+        """Distance between deck and frame in the middle of the face; positive when the deck stands
+        off."""
         # The error is seat minus measured, so a deck that stands too high has a negative z.
         return -float(self.error[2]) / MM
 
@@ -62,7 +64,7 @@ class SeatRotation:
 
     @property
     def acceptance_deg(self) -> float:
-        """Up to here the rotation is surely within its limit."""
+        """Greatest measured rotation that is surely within its limit."""
         return self.limit_deg - self.uncertainty_deg
 
 
@@ -89,7 +91,8 @@ def _moved(M_T_D: RigidTransform, hole: Hole) -> Array:
 
 
 def _lateral_uncertainty_mm(M_T_D: UncertainPose, hole: Hole) -> float:
-    """Of the direction in which it is greatest: that of a small offset is not known."""
+    """Uncertainty of the lateral offset in the direction in which it is greatest: the direction of
+    a small offset is not known."""
     turned_m = M_T_D.pose.rotation.apply(hole.position_m)
     design = by_pose(turned_m[None])[0, :2]
     variance = np.linalg.eigvalsh(design @ M_T_D.covariance @ design.T).max()

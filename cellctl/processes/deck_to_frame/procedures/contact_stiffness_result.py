@@ -14,7 +14,7 @@ SIGMA_PERCENT = 20.0
 RESIDUAL_N = 3.0
 """A reading about the line: noise of force and length of single moves."""
 SPREAD_MM = 0.06
-"""Where the contacts begin, about the repeatability of an arm."""
+"""Largest spread of the travels at which the contacts begin: about the repeatability of an arm."""
 
 
 def stiffness_checks(measured: ContactStiffness, mating: Mating) -> Checks:

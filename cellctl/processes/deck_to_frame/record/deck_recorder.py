@@ -86,7 +86,7 @@ class DeckRecorder:
     iterations: int = 0
     """Passes of the measure-correct loop so far."""
     _settings: MatingSettings | None = None
-    """Of the mating that was planned last."""
+    """Settings of the mating that was planned last."""
     _kept: int = 0
     _names: Counter[str] = field(default_factory=Counter)
 

@@ -78,8 +78,8 @@ OF_ONE_PAIR = frozenset(
 )
 """Faults that the images of one head lead to by themselves."""
 ROUNDING = 1e-9
-"""In mm and degrees: the last digits depend on the number of threads that compute, and recorded
-poses are written as angles."""
+"""Difference in mm and degrees that counts as rounding: the last digits depend on the number of
+threads that compute, and recorded poses are written as angles."""
 
 
 @dataclass(slots=True)
@@ -91,7 +91,7 @@ class Replay:
     recipe: DeckRecipe
     geometry: CalibrationSet
     features: Mapping[str, FeatureFile]
-    """By part."""
+    """Feature files by part."""
     frame: PartPose | None = None
     _images: dict[str, str] = field(default_factory=dict)
 

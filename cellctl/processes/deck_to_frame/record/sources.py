@@ -93,12 +93,12 @@ def taken(name: str, shots: Sequence[tuple[StereoPair, StereoPair]]) -> dict[str
 
 
 def view_name(head: int, side: str) -> str:
-    """Of one camera of a head, as in the names of files."""
+    """Name of the view of one camera of a head, as in the names of files."""
     return f"head-{head}-{side}"
 
 
 def rims(measured: PartMeasurement) -> dict[str, tuple[MeasuredRim, ...]]:
-    """By view, what was found in the images of a measurement, with the residuals of its pose."""
+    """What was found in the images of a measurement, by view, with the residuals of its pose."""
     distances_m = np.linalg.norm(measured.pose.residuals_m, axis=1).tolist()
     residuals_um = {
         name: distance_m * 1e6

@@ -138,7 +138,8 @@ def _before_mating(record: RunRecord) -> Iterator[Requirement]:
 
 
 def _expanded(record: RunRecord, part: slice) -> float | None:
-    """Of the component that is known least: which of them is the worst may be chance."""
+    """Expanded uncertainty of the component that is known least: which of them is the worst may be
+    chance."""
     if not record.passes:
         return None
     sigmas = [component.sigma for component in record.passes[-1].components[part]]

@@ -27,11 +27,11 @@ class PartDrawing:
 
     @property
     def holes(self) -> dict[str, Hole]:
-        """By name."""
+        """The holes of the drawing by their names."""
         return {hole.name: hole for hole in self.features.holes}
 
     def position_mm(self, name: str) -> Array:
-        """Of a hole, shape (3,)."""
+        """Position of a hole on the drawing, shape (3,)."""
         return np.asarray(self.holes[name].position_m) / MM
 
     def issue(self, key: str, value: str, allowed: str) -> ConfigIssue:

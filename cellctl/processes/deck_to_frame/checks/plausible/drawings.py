@@ -19,7 +19,7 @@ _OUTWARD = 0.9
 _PIN_MM = 0.5
 """A pin fits both holes with a few hundredths."""
 _BORE = (0.8, 2.0)
-"""Of a deck's bore over the thread below it: a core hole and a generous clearance hole."""
+"""Limits of a deck's bore over the thread below it: a core hole and a generous clearance hole."""
 _ABOVE_MM = 1.0
 _SHARE_OF_THRESHOLD = 3.0
 """A measured pose counts when its standard deviation is a third of the threshold."""

@@ -13,10 +13,11 @@ from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME
 from cellctl.processes.deck_to_frame.roles import MEASURING
 
 APART_MM, APART_DEG = 100.0, 10.0
-"""More than bases of arms and heads on flanges are off their drawings."""
+"""Distance and angle beyond which a mounting is told: bases of arms and heads on flanges are less
+off their drawings."""
 _AGREES = 0.25
-"""Of these: so close a mounting comes only when it was meant. Otherwise a turn by 9° the other way
-would pass for the correction of one by 11°."""
+"""Share of these within which a corrected mounting has to agree: so close it comes only when it was
+meant. Otherwise a turn by 9° the other way would pass for the correction of one by 11°."""
 
 
 def is_apart(modelled: RigidTransform, calibrated: RigidTransform) -> bool:

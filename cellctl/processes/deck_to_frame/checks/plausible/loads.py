@@ -10,12 +10,12 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import MAIN
 
 _MOST_SAG_MM = 10.0
-"""Of an arm under its load. The same as a lowest natural frequency of 5 Hz, sqrt(g / sag) / 2 pi,
-which every industrial arm exceeds with its rated load."""
+"""Greatest sag of an arm under its load. It is that of a lowest natural frequency of 5 Hz, sqrt(g /
+sag) / 2 pi, which every industrial arm exceeds with its rated load."""
 _SWINGS_TO = 2.0
 """Times the force of a steady acceleration: a load on a spring that is suddenly accelerated."""
 _MOST_LEFT = 0.2
-"""Of the weight: what gravity compensation may leave, of which 4 % is usual."""
+"""Greatest share of the weight that gravity compensation may leave; 4 % is usual."""
 
 
 def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:

@@ -22,7 +22,8 @@ from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.registration.rigid_fit import on_a_line
 
 _NEARLY = 0.05
-"""Of what three holes are spread along a line, across it."""
+"""Three holes are nearly on a line when they spread across it by less than this share of their
+spread along it."""
 
 
 def recipe_remarks(

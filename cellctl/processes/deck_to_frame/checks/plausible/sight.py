@@ -29,7 +29,8 @@ from cellctl.processes.deck_to_frame.roles import DECK_MEASURE, HEAD_1, MAIN, ME
 _UNKNOWN_CONE = float(np.tan(np.radians(25.0)))
 """Half of a wide lens, for a head whose cameras are not calibrated yet."""
 _BEYOND = 0.05
-"""Of the picture's size: so far outside is no doubt."""
+"""A place counts as out of sight when it lies outside of the picture by this share of the picture's
+size."""
 _NEAREST_M = 0.1
 
 
@@ -56,7 +57,7 @@ class Optics:
 
     @classmethod
     def of_head(cls, cell: CellConfig, folder: Path, role: str) -> "Optics":
-        """As calibrated; a wide cone where it is not."""
+        """The optics of a head as calibrated; a wide cone where it is not calibrated yet."""
         record = stored_record(cell, folder, role)
         if record is None:
             return cls(np.full(2, -_UNKNOWN_CONE), np.full(2, _UNKNOWN_CONE))

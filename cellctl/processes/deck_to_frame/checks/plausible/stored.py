@@ -20,7 +20,7 @@ from cellctl.processes.deck_to_frame.record_names import (
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MAIN, MEASURING, RETRACTED
 
 SAME_DEG = 0.1
-"""In every axis: one pose that was written twice."""
+"""Two poses that differ by less in every axis are one pose that was written twice."""
 
 
 def stored_record(cell: CellConfig, folder: Path, kind: str) -> Mapping[str, Any] | None:
