@@ -46,11 +46,11 @@ class PoseOrigin(StrEnum):
     """Where the knowledge of a pose comes from."""
 
     MEASURED = "measured"
-    """By cameras or by touch."""
+    """The pose was measured, by cameras or by touch."""
     COMMANDED = "commanded"
     """The target that a robot was given."""
     REPORTED = "reported"
-    """By the robot, from its own encoders."""
+    """The pose was reported by the robot, from its own encoders."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +59,11 @@ class Phase:
 
     id: int
     number: int
-    """As the line sees it in the step register."""
+    """Number of the step, as the line sees it in the step register."""
     label: str
     began: datetime
     ended: datetime | None
-    """None while it lasts, and for ever when the daemon died in it."""
+    """End of the phase; None while it lasts, and for ever when the daemon died in it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +75,13 @@ class Figure:
     label: str
     """Words for people."""
     value: float | None
-    """None is unknown."""
+    """The value; None when it is unknown."""
     unit: str
     lower: float | None = None
     upper: float | None = None
     verdict: Verdict | None = None
-    """None when it has no limit, PASS within its limits, FAIL beyond them or unknown."""
+    """None when the figure has no limit, PASS within its limits, FAIL beyond them or when
+    unknown."""
     time: datetime = field(default_factory=utc_now)
     phase: int | None = None
 
@@ -98,8 +99,8 @@ class RecordedPose:
     sigma_mm_deg: Six | None = None
     """Standard deviations of x, y, z, rx, ry, rz in the axes of the parent."""
     covariance_mm_deg: Matrix | None = None
-    """In the convention of ``cellctl.geometry.uncertain``. None for poses that are not measured,
-    and in runs of schema 1, which kept the standard deviations alone."""
+    """Covariance in the convention of ``cellctl.geometry.uncertain``. None for poses that are not
+    measured, and in runs of schema 1, which kept the standard deviations alone."""
     residual_um: float | None = None
     """Rms of the features that were fitted."""
     frames: int | None = None
@@ -190,7 +191,8 @@ class Gauge:
     source: str
     """Who measured."""
     gauge_id: str | None = None
-    """Of the plug gauge itself; None in stores of schema 1 and 2, empty where nobody named one."""
+    """Id of the plug gauge itself; None in stores of schema 1 and 2, empty where nobody named
+    one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -260,9 +262,9 @@ class RunRecord:
     gauges: tuple[Gauge, ...]
     """The newest per hole: it counts."""
     gauge_history: tuple[Gauge, ...]
-    """All of them, the oldest first."""
+    """All gauges, the oldest first."""
     seal: Seal | None
-    """None while the run is open."""
+    """Seal of the closed run; None while it is open."""
 
     @property
     def measurements(self) -> tuple[RecordedPose, ...]:

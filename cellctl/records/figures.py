@@ -17,7 +17,8 @@ class Limit:
     upper: float | None = None
 
     def judge(self, value: float | None) -> Verdict | None:
-        """None without any limit; a value that is unknown or not finite fails every limit."""
+        """The verdict on a value; None without any limit. A value that is unknown or not finite
+        fails every limit."""
         if self.lower is None and self.upper is None:
             return None
         # A figure that could not be measured must not look like one that is within its limit.

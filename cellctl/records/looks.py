@@ -38,7 +38,7 @@ class MeasuredRim:
     semi_axes_px: tuple[float, float]
     """Major, minor."""
     angle_rad: float
-    """Of the major axis, from the columns towards the rows."""
+    """Angle of the major axis, from the columns towards the rows."""
     residual_um: float | None = None
     """How far the feature lies from where the registered drawing has it; None where unknown."""
     used: bool = True
@@ -58,7 +58,7 @@ def documents_of_look(
 
 
 def taken_images(record: RunRecord) -> dict[str, TakenImage]:
-    """By the names of the files; empty in runs that did not keep it."""
+    """What is known of each image, by the name of its file; empty in runs that did not keep it."""
     return {
         name: TakenImage(one["look"], one["view"], datetime.fromisoformat(one["time"]))
         for name, one in record.document(TAKEN).items()
@@ -66,7 +66,7 @@ def taken_images(record: RunRecord) -> dict[str, TakenImage]:
 
 
 def rims_of(record: RunRecord) -> dict[tuple[str, str], tuple[MeasuredRim, ...]]:
-    """By look and view; empty in runs that did not keep them."""
+    """The rims that were measured, by look and view; empty in runs that did not keep them."""
     return {
         (look, view): tuple(_rim(one) for one in rims)
         for look, views in record.document(RIMS).items()

@@ -56,7 +56,7 @@ def listed_runs(folder: Path, limit: int, wanted: RunFilter = ALL) -> list[Liste
 
 
 def _read(file: Path, limit: int, wanted: RunFilter) -> list[ListedRun] | None:
-    """None for a store of another version."""
+    """The runs of one file; None for a store of another version."""
     try:
         with closing(sqlite3.connect(file, timeout=_BUSY_TIMEOUT_S)) as connection:
             connection.row_factory = sqlite3.Row

@@ -22,7 +22,7 @@ class LedgerHead:
     length: int
     """Number of the newest entry; 0 in an empty store."""
     hash: str
-    """Of that entry."""
+    """Hash of that entry."""
 
     def __str__(self) -> str:
         return f"{self.length}:{self.hash}"

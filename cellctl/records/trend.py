@@ -59,9 +59,9 @@ class Trend:
     lower_control: float
     upper_control: float
     cp: Index | None
-    """None without two limits, or with too few runs."""
+    """Potential capability; None without two limits, or with too few runs."""
     cpk: Index | None
-    """None without a limit, or with too few runs."""
+    """Capability with the mean where it is; None without a limit, or with too few runs."""
     signals: tuple[Signal, ...]
 
 

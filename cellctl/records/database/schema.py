@@ -185,7 +185,7 @@ class GaugeRow(Base):
     diameter_mm: Mapped[float]
     source: Mapped[str]
     gauge_id: Mapped[str | None]
-    """Of the plug gauge itself; None in rows of schema 1 and 2."""
+    """Id of the plug gauge itself; None in rows of schema 1 and 2."""
 
 
 class AuditRow(Base):
@@ -210,7 +210,7 @@ class LedgerRow(Base):
     subject: Mapped[int]
     """Number of the run or id of the row; 0 for a subject that has a name."""
     name: Mapped[str | None]
-    """Of a subject without a number: the id of a calibration, the name of a value."""
+    """Name of a subject without a number: the id of a calibration, the name of a value."""
     content: Mapped[str] = mapped_column(String(64))
     previous: Mapped[str] = mapped_column(String(64))
     hash: Mapped[str] = mapped_column(String(64), unique=True)

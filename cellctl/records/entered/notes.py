@@ -27,7 +27,7 @@ class Surrounding:
     """One quantity of the air round a cell."""
 
     key: str
-    """In the detail of the audit log; ends in the unit."""
+    """Key of the note in the detail of the audit log; it ends in the unit."""
     label: str
     unit: str
     plausible: Limit

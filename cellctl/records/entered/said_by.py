@@ -9,15 +9,16 @@ from collections.abc import Sequence
 from cellctl.records.entries import AuditEntry, Gauge
 
 BY = "by"
-"""In the detail of an entry: the name that was typed."""
+"""Key in the detail of an entry: the name that was typed."""
 GAUGE = "gauge"
 """Action of the audit log."""
 ENTERED = "entered"
-"""In the detail of a gauge's entry: the time of the gauge, by which it is found."""
+"""Key in the detail of a gauge's entry: the time of the gauge, by which it is found."""
 
 
 def said_by(entry: AuditEntry) -> str:
-    """As ``Anna, typed by terminal:root``; in entries of earlier versions a typed name is alone."""
+    """Who has said it, as ``Anna, typed by terminal:root``; in entries of earlier versions a typed
+    name stands alone."""
     typed = entry.detail.get(BY)
     return f"{typed}, typed by {entry.actor}" if typed else entry.actor
 

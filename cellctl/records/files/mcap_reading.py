@@ -78,7 +78,7 @@ def read_mcap(data: bytes) -> McapContent:
 
 
 def read_raw(data: bytes) -> RawContent:
-    """Likewise, without a look into the messages."""
+    """As ``read_mcap``, but without a look into the messages."""
     topics: dict[int, str] = {}
     messages: list[RawMessage] = []
     facts: dict[str, str] = {}

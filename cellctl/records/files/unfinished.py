@@ -36,7 +36,8 @@ class UnfinishedRecordings:
             return path.read_bytes() if path.exists() else None
 
     def remove(self, run: int) -> None:
-        """Of a run whose recording stands in its record, or will never be one."""
+        """Remove the recording of a run that has it in its record, or that will never have a
+        record."""
         _remove(self._path(run))
 
     def clear(self) -> None:

@@ -79,7 +79,8 @@ def _valid_until(found: Calibration) -> str:
 
 
 def _verdict(found: Calibration) -> str:
-    """In its own words; of a payload identification, which has none, whether it was accepted."""
+    """The verdict in the record's own words; for a payload identification, which has none, whether
+    it was accepted."""
     verdict = found.record.get("verdict")
     if verdict is not None:
         return str(verdict)

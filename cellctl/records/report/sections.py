@@ -20,7 +20,7 @@ class Tile:
     value: str
     bound: str
     passed: bool | None
-    """None where there is nothing to judge."""
+    """Whether the check was passed; None where there is nothing to judge."""
 
 
 class RowMark(Enum):
@@ -135,7 +135,7 @@ class ProcessPages:
     words: Mapping[str, str] = field(default_factory=dict)
     """What the figures without a limit are called in standard terms, by their keys."""
     sections: tuple[ReportSection, ...] = ()
-    """After the poses, in this order."""
+    """Sections that come after the poses, in this order."""
     shows: frozenset[RecordPart] = frozenset()
     """Parts that ``sections`` show, so that they are not shown twice."""
     documents: frozenset[str] = frozenset()

@@ -8,7 +8,7 @@ from typing import Any
 from cellctl.records.units import SIX, SIX_MM_DEG, WRITTEN_POSE, WRITTEN_POSES, label, words
 
 _DECIMALS = {"mm": 4, "°": 5}
-"""Of errors and their deviations: 0.1 µm, and what that is at an arm's length."""
+"""Decimals of errors and their deviations, by unit: 0.1 µm, and what that is at an arm's length."""
 MISSING = "–"
 _NESTED = (Mapping, list, tuple)
 
@@ -79,7 +79,8 @@ def plain(value: Any) -> str:
 
 
 def number(value: float) -> str:
-    """Up to four significant figures, never in exponent form for sizes that occur in a cell."""
+    """A number with up to four significant figures, never in exponent form for sizes that occur in
+    a cell."""
     if not math.isfinite(value):
         return MISSING
     magnitude = abs(value)

@@ -57,15 +57,15 @@ class ReportSources:
     """What a report needs besides the record of its run."""
 
     calibrations: Mapping[str, Calibration]
-    """Of the store, by identity."""
+    """Calibrations of the store, by identity."""
     audit: Sequence[AuditEntry]
     """The audit log of the store, oldest first."""
     ledger_head: LedgerHead
-    """Of the store when the report is made."""
+    """End of the store's hash chain when the report is made."""
     cell: Mapping[str, Any]
     """The cell file that the run was made with; empty where the run has none."""
     addresses: Mapping[str, str]
-    """Of the pictures, by the names of their files."""
+    """Addresses of the pictures, by the names of their files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class ReportView:
     pictures: tuple[PictureGroup, ...]
     alarms: tuple[AlarmLine, ...]
     ledger_head: LedgerHead
-    """Of the store when the report was made."""
+    """End of the store's hash chain when the report was made."""
 
 
 def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -> ReportView:

@@ -32,7 +32,7 @@ class ExportedRun:
 
     path: Path
     messages: Mapping[str, int]
-    """By topic."""
+    """Number of messages, by topic."""
     missing: tuple[str, ...]
     """Empty when all that the record names is in the file."""
 

@@ -45,7 +45,7 @@ class ImageForm(StrEnum):
     LOSSLESS = "lossless"
     """Every pixel as the camera gave it; some 3 MB an image."""
     JPEG = "jpeg"
-    """To look at and to send; some 0.3 MB an image."""
+    """Smaller images to look at and to send; some 0.3 MB an image."""
     NONE = "none"
 
 

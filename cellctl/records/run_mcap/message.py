@@ -42,10 +42,10 @@ class TimedMessage:
 
 
 def nanoseconds(time: datetime) -> int:
-    """Of a wall-clock time; exact to the microsecond that it has."""
+    """A wall-clock time in nanoseconds; exact to the microsecond that it has."""
     return int(time.timestamp()) * 1_000_000_000 + time.microsecond * 1000
 
 
 def stamp(time_ns: int) -> Timestamp:
-    """The same time inside of a message."""
+    """A time in nanoseconds as messages hold it."""
     return Timestamp(seconds=time_ns // 1_000_000_000, nanos=time_ns % 1_000_000_000)

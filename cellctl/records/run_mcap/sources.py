@@ -15,7 +15,7 @@ class RunSources:
 
     record: RunRecord
     audit: Sequence[AuditEntry]
-    """Of the time of the run."""
+    """The audit log of the time of the run."""
     calibrations: Sequence[Calibration]
     """Those that the run used."""
     files: ArtefactFolder

@@ -1,4 +1,5 @@
-"""Of which parts, by whom, on which order, in which surroundings."""
+"""What an acceptance record is about: which parts, made by whom, on which order, in which
+surroundings."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any

@@ -15,16 +15,16 @@ class Requirement:
     """What was measured; None is unknown."""
     unit: str
     required: Limit
-    """As the recipe or the drawing states it."""
+    """The limit, as the recipe or the drawing states it."""
     verdict: Verdict | None
-    """None where nothing was measured yet."""
+    """The verdict; None where nothing was measured yet."""
     expanded: float | None = None
     """Expanded uncertainty of the value (JCGM 100, 6.2) with ``COVERAGE_FACTOR``; None where none
     was evaluated, and the value is judged by its limit alone."""
     accepted: Limit = NO_LIMIT
     """The limit less the expanded uncertainty, where that decides (JCGM 106, 8.3)."""
     phase: int | None = None
-    """In which the value was found."""
+    """Number of the phase in which the value was found."""
     figure: str = ""
     """Key of the figure that it shows, so that it is not shown twice."""
 
