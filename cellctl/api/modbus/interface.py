@@ -82,6 +82,8 @@ class PlcInterface:
         self._status = CellStatus()
         self._seq = 0
         self._beats = 0
+        self._published = self._values()
+        """What lies in the input registers, by name: published, shown and recorded are the same."""
 
     @property
     def port(self) -> int:
@@ -98,8 +100,8 @@ class PlcInterface:
 
         Items that the line writes have their words, which nobody has understood yet.
         """
-        now, holding = self._values(), self._registers.holding
-        to_line = [_described(item, "cell", now[item.name]) for item in INPUT]
+        holding = self._registers.holding
+        to_line = [_described(item, "cell", self._published[item.name]) for item in INPUT]
         from_line = [
             _described(item, "line", " ".join(str(holding[one]) for one in item.addresses))
             for item in HOLDING
@@ -113,9 +115,8 @@ class PlcInterface:
         change with every look are left out.
         """
         holding, order = self._registers.holding, self._config.word_order
-        to_line = self._values()
         return {
-            INPUT_TOPIC: {name: _plain(to_line[name]) for name in _RECORDED},
+            INPUT_TOPIC: {name: _plain(self._published[name]) for name in _RECORDED},
             HOLDING_TOPIC: {
                 item.name: decode(item, holding, order) for item in HOLDING if item.name != _BEAT
             },
@@ -232,7 +233,8 @@ class PlcInterface:
     def _refresh(self) -> None:
         # The same number at both ends of the block: a PLC that reads it in slices sees a tear.
         self._seq = (self._seq + 1) & 0xFFFF
-        self._registers.publish(input_block(self._values(), self._config.word_order))
+        self._published = self._values()
+        self._registers.publish(input_block(self._published, self._config.word_order))
 
     def _values(self) -> dict[str, Value]:
         latch = self._latch
