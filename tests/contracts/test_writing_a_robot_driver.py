@@ -4,12 +4,10 @@ this repository's own tests pass beside it.
 
 from pathlib import Path
 
-import pytest
-
 from tests.guides.package import (
     ROOT,
     contract_of,
-    install,
+    guide_package,
     registry_beside,
     style_of,
     write_files,
@@ -19,20 +17,7 @@ GUIDE = ROOT / "docs" / "writing-a-robot-driver.md"
 FOLDER = {"README.md", "config.py", "protocol.py", "connection.py", "driver.py", "faults.py"}
 
 
-@pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """All files of the guide in a folder of their own, outside this repository."""
-    folder = tmp_path_factory.mktemp("cellctl-beta")
-    write_files(GUIDE, folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def installed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Where the package of the guide is installed, not in this environment."""
-    site = tmp_path_factory.mktemp("site")
-    install(written, site)
-    return site
+written, installed = guide_package(GUIDE, "cellctl-beta")
 
 
 def test_the_folder_is_complete(written: Path) -> None:

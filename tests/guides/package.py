@@ -6,6 +6,9 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
+
+import pytest
 
 ROOT = Path(__file__).parents[2]
 _FILE = re.compile(
@@ -27,6 +30,28 @@ def install(folder: Path, site: Path) -> None:
     offline = ["--no-deps", "--no-build-isolation", "--no-index", "--disable-pip-version-check"]
     done = run("pip", "install", "--quiet", *offline, "--target", str(site), str(folder))
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def guide_package(guide: Path, name: str) -> tuple[Any, Any]:
+    """The fixtures ``written`` and ``installed`` of a guide, one of each for all tests of a module.
+
+    ``written`` is the folder, named after ``name`` and outside this repository, with every file of
+    the guide; ``installed`` is where the package in it is installed, not in this environment.
+    """
+
+    @pytest.fixture(scope="module")
+    def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+        folder = tmp_path_factory.mktemp(name)
+        write_files(guide, folder)
+        return folder
+
+    @pytest.fixture(scope="module")
+    def installed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+        site = tmp_path_factory.mktemp("site")
+        install(written, site)
+        return site
+
+    return written, installed
 
 
 def contract_of(folder: Path, site: Path) -> "subprocess.CompletedProcess[str]":

@@ -7,25 +7,14 @@ import pytest
 
 from cellctl.records.entries import RunRecord
 from cellctl.records.store import RunStore
-from tests.guides.package import ROOT, install, write_files
+from tests.guides.package import ROOT, guide_package
 from tests.rigs.wire.ports import free_port
 
 GUIDE = ROOT / "docs" / "writing-a-process.md"
 _PORTS = re.compile(r"(?:\b\w*port|CMD|STA|GRD) = (\d{4})\b")
 
 
-@pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("cellctl-acme-weighing")
-    write_files(GUIDE, folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def installed(written: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    site = tmp_path_factory.mktemp("site")
-    install(written, site)
-    return site
+written, installed = guide_package(GUIDE, "cellctl-acme-weighing")
 
 
 class SmallCell:
