@@ -10,6 +10,8 @@ from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 
 _ROUNDING = 1e-3
+"""Largest element of R Rᵀ − I of a matrix in a file: files are often rounded to three or four
+digits. The nearest rotation is taken then."""
 _NOT_A_POSE = "a pose is a 4 x 4 matrix in mm or six numbers X, Y, Z, A, B, C"
 _WRITTEN_UNITS = np.array([MM] * 3 + [np.pi / 180] * 3)
 

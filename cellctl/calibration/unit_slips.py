@@ -12,7 +12,10 @@ from typing import Any
 from cellctl.errors.config import FileInvalid
 
 _LEAST_MM = 20.0
+"""When every coordinate of a file is smaller, it was written in metres: no arm works within 20 mm
+of its base."""
 _LARGEST_RAD = 2.0 * math.pi
+"""When every joint of a file is smaller, it was written in radians."""
 
 
 def require_usual_units(file: str, content: object) -> None:

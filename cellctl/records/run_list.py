@@ -21,6 +21,7 @@ from cellctl.records.run_filter import RunFilter
 
 ALL = RunFilter()
 _BUSY_TIMEOUT_S = 5.0
+"""Longest wait for a daemon that is writing, as in ``database.sessions``."""
 _COLUMNS = tuple(field.name for field in fields(RunHead))
 _TIMES, _JSON, _TRUTHS = frozenset({"started", "ended"}), "calibration_ids", "simulated"
 """Columns that SQLite keeps as text or number, see ``column_types.py``."""

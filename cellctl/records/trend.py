@@ -18,6 +18,7 @@ _RANGE_EFFICIENCY = 0.62
 _LEAST = 10
 """Fewer runs say nothing of a spread: their interval would span a factor of three."""
 _ONE_SIDE, _RISING = 8, 6
+"""So many values in a row on one side of the mean, or rising or falling, are a signal."""
 CONFIDENCE = 0.95
 
 

@@ -22,8 +22,11 @@ _SUSPICIOUS = (1, 4)
 """Numbers of pairs without the board after which, as long as they are the majority, the images are
 examined for another board."""
 _BLACK_LEVEL = 16
+"""An image with hardly a pixel above this is black."""
 _FULL_LEVEL = 254
 _FULL_ALWAYS, _FULL_SUSPECT = 0.7, 0.2
+"""Largest share of saturated pixels in an image that shows the board, and in one in which it was
+not found; see ``_check_exposure``."""
 
 T = TypeVar("T")
 V = TypeVar("V")

@@ -13,6 +13,7 @@ from cellctl.interfaces.target_tracker import Target
 from cellctl.vision.registration.rigid_fit import register
 
 _MIN_DISCS = 4
+"""Three discs have a pose, but leave nothing by which a confused one would be noticed."""
 _MAX_RMS_M = 2e-3
 """Largest rms distance of the discs from the board. Beyond it discs are confused, or it is another
 board."""

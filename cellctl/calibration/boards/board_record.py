@@ -10,7 +10,9 @@ from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Circles
 from cellctl.geometry.pose import MM, Array
 
 _WIDEST_MM = 10_000
+"""No board has squares of ten metres: a length that large is in another unit."""
 _DIGITS_OF_A_NANOMETRE = 6
+"""Digits behind the point of a length in mm."""
 
 
 def board_to_record(board: CalibrationBoard) -> dict[str, Any]:

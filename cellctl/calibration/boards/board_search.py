@@ -12,6 +12,8 @@ _SEARCH_PX, _THOROUGH_PX = (1000, 500), 600
 _QUICK = cv2.CALIB_CB_ADAPTIVE_THRESH | cv2.CALIB_CB_NORMALIZE_IMAGE | cv2.CALIB_CB_FAST_CHECK
 _THOROUGH = cv2.CALIB_CB_EXHAUSTIVE | cv2.CALIB_CB_NORMALIZE_IMAGE
 _MAX_CORNERS = 16
+"""Boards of unknown size are tried with fewer corners than this along each side: every size takes a
+search of its own."""
 _CONTINUES = 0.6
 """Contrast of a line of corners beyond the last one against that of the last one. Where the board
 ends, two of the four squares about such a corner are missing, which leaves half."""

@@ -24,11 +24,14 @@ _UNIT: Array = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 _REACH_OF_RADIUS = 0.4
 """How far from the expected rim its edge is searched: neighbours are at least as far again."""
 _LEAST_REACH_PX, _STEP_PX = 2.0, 0.5
+"""Least reach on a small circle, and the distance of the samples along a ray."""
 _PASSES = 2
 """The first finds the rim from a reduced image, the second measures across it."""
 _OUTLIER = 4.0
 """Edge points further off, in robust standard deviations, do not count: a scratch, a cable."""
 _SMALLEST_SIGMA_PX = 0.02
+"""Scatter that edge points are believed to have at least: otherwise good points would be thrown
+away where by chance all of them agree."""
 _FEWEST = 24
 """Edge points of a rim that is taken."""
 

@@ -14,16 +14,19 @@ from cellctl.interfaces.stereo_camera import Image
 
 _WINDOW_OF_SQUARE = 0.12
 _MIN_WINDOW_PX, _MAX_WINDOW_PX = 5, 15
-"""Half window of the corner refinement: long enough for many edge pixels, short enough to keep off
-the next corner and lens distortion. Measured on 140 px squares: 0.024 px with 5, 0.012 with 15."""
+"""Half window of the corner refinement over the side of a square, and its limits: long enough for
+many edge pixels, short enough to keep off the next corner and lens distortion. Measured on 140 px
+squares: 0.024 px with 5, 0.012 with 15."""
 _WINDOW_OF_GAP, _MIN_SADDLE_PX, _MAX_SADDLE_PX = 0.5, 2, 6
 """Half window beside a marker over the gap between corner and marker, and its limits."""
 _FEWEST_FOR_STRAYS, _STRAY_ROUNDS = 24, 3
+"""With fewer corners the smooth board that they are compared with would follow a stray one."""
 _STRAY_PX, _STRAY_MEDIANS = 0.3, 6.0
 """Corners farther than this from a smooth board are no corners of it: in px, and over the median
 of the image."""
 _CRITERIA = (cv2.TERM_CRITERIA_COUNT | cv2.TERM_CRITERIA_EPS, 50, 1e-4)
 _MIN_CHARUCO = 12
+"""Least number of corners of a view of a ChArUco board."""
 
 
 def detect_corners(image: Image, board: CalibrationBoard) -> Corners | None:

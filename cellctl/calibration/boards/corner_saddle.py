@@ -13,6 +13,7 @@ from cellctl.interfaces.stereo_camera import Image
 
 _ROUNDS, _SETTLED_PX = 10, 1e-3
 _MAX_STEP_PX = 1.0
+"""Longest step: farther away the quadratic that was fitted says nothing of the image."""
 
 
 def saddle_points(image: Image, pixels: Array, half: int) -> Array:

@@ -21,6 +21,8 @@ from cellctl.records.database import migration
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
 _BUSY_TIMEOUT_S = 5
+"""Longest wait of SQLite for another process that is writing, such as a command that enters a
+gauge; a write takes milliseconds."""
 _READS = "store_reads"
 
 

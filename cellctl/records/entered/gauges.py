@@ -12,6 +12,7 @@ from cellctl.records.figures import NO_LIMIT, Limit
 
 GAUGE_HOLES = "gauge_holes"
 _RANGE_MM = Limit(0.5, 50.0)
+"""Diameters that plug gauges for pin holes have; anything else is a slip of the keyboard."""
 _NO_PART = frozenset({RunResult.STOPPED, RunResult.ABORTED, RunResult.INTERRUPTED})
 
 

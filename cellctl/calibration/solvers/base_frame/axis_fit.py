@@ -24,6 +24,7 @@ Indices = NDArray[np.intp]
 _STILL_RAD = 1e-4
 """The other joints hold their place within their encoders' noise."""
 MIN_STOPS = 4
+"""Stops of one axis. Three points always lie on a circle; the fourth shows whether these do."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

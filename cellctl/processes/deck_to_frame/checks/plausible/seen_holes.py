@@ -38,6 +38,7 @@ from cellctl.processes.deck_to_frame.roles import (
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 
 _FACING = 0.7
+"""Cosine of the angle at which a head may look at a board: some 45°."""
 _WIDEST_MM = 400.0
 """From hole to hole of one head whose place is not known: the diagonal of a field of 0.3 m."""
 

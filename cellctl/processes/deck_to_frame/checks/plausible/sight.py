@@ -32,6 +32,7 @@ _BEYOND = 0.05
 """A place counts as out of sight when it lies outside of the picture by this share of the picture's
 size."""
 _NEAREST_M = 0.1
+"""Distance before a camera from which on a point can be in its picture."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
