@@ -26,7 +26,7 @@ _log = log.get(__name__)
 AUTO_EXPOSURE = "images.auto_exposure"
 """Key of the document that holds what was found for each camera of a run."""
 _FIRST_S = 0.005
-"""Where the camera does not say how long it exposes, or sets it by itself."""
+"""First exposure to try where the camera does not say how long it exposes, or sets it by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Looked:
     """One exposure of a camera or head."""
 
     exposure_s: float | None
-    """As the camera states it."""
+    """Exposure time as the camera states it."""
     light: Brightness
 
 
@@ -46,7 +46,7 @@ class FoundExposure:
     grey: float
     """Round the holes, in grey values of 8 bit; of a head, that of the brighter view."""
     saturated_share: float
-    """Of the pixels round the holes."""
+    """Share of saturated pixels round the holes."""
     holes: int
     exposures: int
     """Taken for it."""

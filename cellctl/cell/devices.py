@@ -72,7 +72,7 @@ class Cell:
         self.trackers = drivers_of(config, "trackers", PatientTracker)
         self.grippers = drivers_of(config, "grippers", PatientGripper)
         self.guards = {name: _guard(sensor) for name, sensor in config.force_sensors.items()}
-        """By the name of the force sensor that each of them owns."""
+        """Guards by the name of the force sensor that each of them owns."""
         self.workers = VisionWorkers()
         self.connected = False
         """True from a ``connect`` that reached every device until ``disconnect``."""

@@ -8,17 +8,18 @@ class TimeLimits:
     """Seconds. Drivers and the store have shorter ones of their own; these end what hangs there."""
 
     ask_s: float = 60.0
-    """For a device to say who it is; a camera may still be busy with an image before."""
+    """Time for a device to say who it is; a camera may still be busy with an image before."""
     stop_s: float = 8.0
-    """For the stops of all robots together."""
+    """Time for the stops of all robots together."""
     leave_s: float = 8.0
-    """For a cancelled job to stop its robots and write down what it has."""
+    """Time for a cancelled job to stop its robots and write down what it has."""
     abort_s: float = 20.0
-    """For the unit to come to rest when the daemon ends: longer than stop and leave together."""
+    """Time for the unit to come to rest when the daemon ends: longer than stop and leave
+    together."""
     open_record_s: float = 30.0
-    """For the disk to take the row and the files of a run; nothing has moved yet."""
+    """Time for the disk to take the row and the files of a run; nothing has moved yet."""
     close_record_s: float = 15.0
-    """For the disk to take the end of a run, which the line waits for."""
+    """Time for the disk to take the end of a run, which the line waits for."""
 
 
 USUAL = TimeLimits()

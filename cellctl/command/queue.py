@@ -10,7 +10,7 @@ S = TypeVar("S", bound=Submission)
 
 
 class CommandQueue(Generic[S]):
-    """In order of arrival. What arrived before a Stop or an Abort is never taken after it.
+    """Commands in order of arrival. What arrived before a Stop or an Abort is never taken after it.
 
     For clients that give commands without waiting for the answer to the one before, as a PLC does.
     """

@@ -12,7 +12,7 @@ from typing import Any, TextIO
 
 JOURNAL = Path("/run/systemd/journal/socket")
 _PRIORITIES = {"debug": 7, "info": 6, "warning": 4, "error": 3, "critical": 2}
-"""Of syslog, by our levels; journalctl colours and selects by them."""
+"""Priorities of syslog by our levels; journalctl colours and selects by them."""
 _FIELDS = {"run": "CELL_RUN", "step": "CELL_STEP", "module": "CELL_MODULE", "number": "CELL_FAULT"}
 """Field of the journal by name in the line; ``number`` is that of a fault."""
 
@@ -39,7 +39,7 @@ class JournalStream:
         return len(text)
 
     def flush(self) -> None:
-        """Of the stream below; an entry has gone when it is written."""
+        """Flush the stream below; an entry has gone when it is written."""
         self._below.flush()
 
     def close(self) -> None:

@@ -44,7 +44,7 @@ class UncertainPose:
 
 
 def product_jacobians(a_T_b: RigidTransform, b_T_c: RigidTransform) -> tuple[Array, Array]:
-    """By what small errors of two poses change their product, in the convention of this module.
+    """How small errors of two poses change their product, in the convention of this module.
 
     Shape (6, 6) each: of ``a_T_b`` and of ``b_T_c``.
     """
@@ -57,7 +57,7 @@ def product_jacobians(a_T_b: RigidTransform, b_T_c: RigidTransform) -> tuple[Arr
 
 
 def inverse_jacobian(a_T_b: RigidTransform) -> Array:
-    """By what small errors of a pose change its inverse, shape (6, 6)."""
+    """How small errors of a pose change its inverse, shape (6, 6)."""
     rotation_t = a_T_b.rotation.inv().as_matrix()
     jacobian = np.zeros((6, 6))
     jacobian[:3, :3] = -rotation_t

@@ -16,7 +16,7 @@ class DigitalIoState:
     """Monotonic time at which the device's answer was complete on this PC."""
     inputs: Mapping[str, bool]
     outputs: Mapping[str, bool]
-    """As the device drives them, which is not always what was written."""
+    """Outputs as the device drives them, which is not always what was written."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ class ExposureRecord:
 
     serial_number: str | None
     pixel_format: str
-    """As the camera sent it, which may be deeper than what the driver hands on."""
+    """Format in which the camera sent the image; it may be deeper than what the driver hands on."""
     bits: int
     """Significant bits of a sample as the driver hands it on."""
     exposure_s: float | None = None
@@ -21,7 +21,7 @@ class ExposureRecord:
     taken_again: int = 0
     """Exposures that were dropped for this image, because they came damaged or were old ones."""
     device_time_ns: int | None = None
-    """By the camera's own clock; its zero is the camera's affair."""
+    """Time by the camera's own clock; where its zero lies is the camera's affair."""
 
 
 class AdjustableExposure:

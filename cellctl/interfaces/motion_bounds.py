@@ -10,11 +10,11 @@ class MotionBounds:
     """Bounds of one arm; None where the settings of its driver say nothing of it."""
 
     flange_box: Box | None = None
-    """In the robot base: where the flange may be sent."""
+    """Where the flange may be sent, in the robot base."""
     joint_speed_ratio: float | None = None
-    """Of the rated speed, for joint moves."""
+    """Greatest share of the rated speed in joint moves."""
     speed_m_s: float | None = None
-    """Of the flange in straight moves."""
+    """Greatest speed of the flange in straight moves."""
     acceleration_m_s2: float | None = None
     load_kg: float | None = None
     """Greatest load at the flange."""

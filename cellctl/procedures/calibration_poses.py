@@ -8,7 +8,7 @@ DISTANCE_CHANGES_M = (0.0, -0.06, 0.03)
 """Along the line of sight: back and forth."""
 UPRIGHT_SHIFTS_M = ((0.0, 0.0), (0.03, 0.03), (-0.03, 0.03), (-0.03, -0.03), (0.03, -0.03))
 TURNED_SHIFTS_M = ((0.0, 0.0), (0.05, 0.0), (-0.05, 0.0))
-"""In the image plane; a turned board nearly fills the height of the field."""
+"""Shifts of the board in the image plane; a turned board nearly fills the height of the field."""
 
 
 def stereo_views(count: int, pivot_m: np.ndarray) -> list[RigidTransform]:

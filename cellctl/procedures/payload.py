@@ -39,7 +39,7 @@ class SampleSource(Protocol):
         ...
 
     def samples(self, since_s: float) -> GuardSamples:
-        """All samples after a time."""
+        """All samples later than a time."""
         ...
 
 

@@ -35,7 +35,7 @@ START_TIMEOUT_S = 2.0
 END_TIMEOUT_S = 5.0
 SIGMA_MS = 15.0
 METHOD = "overrun against speed"
-"""In the record, which tells it from those of other procedures."""
+"""Name of the method in the record, which tells it from those of other procedures."""
 RESIDUAL_MM = 0.15
 """The robot reports every 20 ms: at 8 mm/s that is 0.16 mm between two reports."""
 

@@ -22,7 +22,7 @@ class LocalApiParts:
     """What the daemon keeps of the local API."""
 
     server: LocalServer
-    """Not yet listening."""
+    """The server of the socket; it does not listen yet."""
     feed: LiveFeed
 
 

@@ -23,9 +23,10 @@ from cellctl.runtime.unit import UnitController
 
 Object = dict[str, Any]
 SLOW_PERIOD_S = 0.5
-"""Of what costs more to ask: links of devices and what is permitted."""
+"""How often what costs more to ask is asked: links of devices, and what is permitted."""
 PRESSES_N = 10.0
-"""Above what the zero of a sensor may drift by, below every force of a mating."""
+"""Force from which on an arm may press: above what the zero of a sensor drifts by, and below every
+force of a mating."""
 _STOPPED = frozenset({State.STOPPED, State.ABORTED})
 _POSE = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
 _WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N·m"), ("My", "N·m"), ("Mz", "N·m"))

@@ -22,7 +22,7 @@ _REMEDIES: Mapping[RejectCode, str] = {
 
 
 def remedy(code: RejectCode, command: UnitCommand) -> str:
-    """In words; empty where what is permitted, or what the cell has, says it."""
+    """What to do, in words; empty where what is permitted, or what the cell has, says it."""
     if code is RejectCode.OTHER_MODE:
         return f"`cellctl mode {Mode(command.in_mode).name.lower()}` first"
     return _REMEDIES.get(code, "")

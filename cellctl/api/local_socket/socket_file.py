@@ -13,7 +13,8 @@ _NAME = "cellctl.sock"
 
 
 def default_path(data_dir: Path) -> Path:
-    """In the runtime directory that systemd gives the service, else in ``data_dir``."""
+    """Path of the socket: in the runtime directory that systemd gives the service, else in
+    ``data_dir``."""
     runtime = os.environ.get("RUNTIME_DIRECTORY", "").split(":")[0]
     return (Path(runtime) if runtime else data_dir) / _NAME
 

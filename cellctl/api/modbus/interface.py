@@ -109,10 +109,10 @@ class PlcInterface:
         return [*to_line, *from_line]
 
     def recorded(self) -> dict[str, dict[str, Value]]:
-        """By topic of a run's recording: every register by name that says something of the run.
+        """Every register by name that says something of the run, by topic of a run's recording.
 
-        Numbers as they lie in the registers, in the units of the register map; counters that
-        change with every look are left out.
+        Numbers as they lie in the registers, in the units of the register map; counters that change
+        with every look are left out.
         """
         holding, order = self._registers.holding, self._config.word_order
         return {
@@ -261,5 +261,5 @@ def _described(item: Item, writer: str, value: Value) -> dict[str, Any]:
 
 
 def _plain(value: Value) -> Value:
-    """Without the names that enumerations give to their numbers."""
+    """The value without the name that an enumeration gives to it."""
     return int(value) if isinstance(value, int) else value

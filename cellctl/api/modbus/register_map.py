@@ -31,7 +31,7 @@ class Item:
     kind: Kind = Kind.U16
     unit: str = ""
     length: int = 1
-    """In registers."""
+    """Length in registers."""
 
     @property
     def addresses(self) -> range:

@@ -173,7 +173,8 @@ class ModbusServer:
 
 
 def _address(writer: asyncio.StreamWriter) -> _Address:
-    """Of the client; one that came in over IPv6 from an IPv4 address is known by the latter."""
+    """Address of the client; one that came in over IPv6 from an IPv4 address is known by the
+    latter."""
     address = ipaddress.ip_address(writer.get_extra_info("peername")[0])
     mapped = address.ipv4_mapped if isinstance(address, ipaddress.IPv6Address) else None
     return mapped or address

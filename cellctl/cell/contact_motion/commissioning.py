@@ -42,7 +42,8 @@ _STEP_N = 5.0
 _STEPS = 8
 _STEP_DEAD_TIMES = 12
 _ACCELERATION_M_S2 = 1.0
-"""For steps of the loop: they are so short that its bound would hide how the loop behaves."""
+"""Acceleration of the steps of the loop. They are so short that the bound of ordinary motions would
+hide how the loop behaves."""
 _Z = 2
 
 
@@ -51,9 +52,9 @@ class StepAnswer:
     """Mean answer of the loop to steps up of its push."""
 
     times_s: Array
-    """Since the step, shape (n,)."""
+    """Times since the step, shape (n,)."""
     rise_n: Array
-    """Above the force before the step, shape (n,)."""
+    """Force above that before the step, shape (n,)."""
     step_n: float
     """Height of the step."""
 
@@ -74,7 +75,7 @@ class CommissionedLoop:
     readings: Array
     """Travel in m and force in N at standstill, shape (n, 2)."""
     answer: StepAnswer
-    """With the gains that follow from ``figures``."""
+    """Answer of the loop to a step, with the gains that follow from ``figures``."""
 
 
 async def commission_contact(
@@ -115,7 +116,7 @@ class _Swing:
     """
 
     samples: list[ContactSample]
-    """After each setpoint."""
+    """The samples after each setpoint."""
     command_m: Array
     sent_s: Array
     force_s: Array
@@ -154,7 +155,8 @@ class _Commissioning:
         return fit_stiffness(*np.array(readings).T), np.array(readings)
 
     async def force_dead_times(self, stiffness_n_m: float) -> Array:
-        """In the middle of the forces; with what a sampled loop adds."""
+        """Dead times of the force, swung in the middle of the forces, with what a sampled loop
+        adds."""
         _, felt_n = await self._reading()
         await self._go(self._loop.tip_command[_Z] + (2 * _STEP_N - felt_n) / stiffness_n_m)
         amplitude_m = min(_STEP_N / stiffness_n_m, self.greatest_chirp_m)

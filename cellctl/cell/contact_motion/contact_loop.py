@@ -60,7 +60,7 @@ class ContactLoop:
 
     @property
     def period_s(self) -> float:
-        """Of the stream."""
+        """Period of the stream."""
         return self.stream.period_s
 
     @property

@@ -20,17 +20,17 @@ def first_of(*ends: End) -> End:
 
 
 def arrived(path: PathFollower) -> End:
-    """At the last point of a path."""
+    """The motion ends at the last point of a path."""
     return lambda _sample: Ended.TRAVEL if path.arrived else None
 
 
 def when(until: Condition | None) -> End:
-    """By the caller's own condition; never without one."""
+    """The motion ends by the caller's own condition; without one it never does."""
     return lambda sample: Ended.CONDITION if until is not None and until(sample) else None
 
 
 def force_above(limit_n: float) -> End:
-    """By the length of the force on the peg."""
+    """The motion ends when the force on the peg, in any direction, is greater than this."""
 
     def end(sample: ContactSample) -> Ended | None:
         return Ended.FORCE if float(np.linalg.norm(sample.force_n)) > limit_n else None

@@ -1,4 +1,4 @@
-"""Where task, tip and flange stand to each other during a streamed contact."""
+"""How task, tip and flange stand to each other during a streamed contact."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation

@@ -16,7 +16,8 @@ from cellctl.geometry.pose import Array
 
 X, Y, Z, TILT_X, TILT_Y, YAW = range(6)
 _SHARE_OF_STEP = 0.45
-"""Of what the controller accepts from tick to tick; path and admittance may each take as much."""
+"""Share of the step that the controller accepts from tick to tick; path and admittance may each
+take as much."""
 
 
 def fastest_m_s(loop: ContactLoop) -> float:

@@ -50,7 +50,7 @@ class ContactMotion:
 
     ended: Ended
     samples: tuple[ContactSample, ...]
-    """At least one: where and how it ended."""
+    """The samples of the motion, at least one: where and how it ended."""
 
     @property
     def last(self) -> ContactSample:

@@ -64,5 +64,5 @@ class ContactSettings:
 
     @property
     def touch_speed_m_s(self) -> float:
-        """At which a new contact grows by no more than the press."""
+        """Speed at which a new contact grows by no more than the press."""
         return touch_speed_m_s(self.figures, self.press_n)

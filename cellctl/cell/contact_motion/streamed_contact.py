@@ -44,10 +44,10 @@ _MET_RATIO = 0.8
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
 """A motion may take so much longer than its way at full speed, before it is given up."""
 _HOLD_S = 30.0
-"""For work beside a standing stream, such as a record on the disk."""
+"""Longest work beside a standing stream, such as a record on the disk."""
 _IN_CONTACT_N = 2.0
 _PULL_RATIO = 2.0
-"""Of the press: a greater pull on the way out means that the peg is held."""
+"""Multiple of the press: a greater pull on the way out means that the peg is held."""
 
 
 class StreamedContact(ContactMotions):
@@ -60,7 +60,7 @@ class StreamedContact(ContactMotions):
     def __init__(self, loop: ContactLoop) -> None:
         self._loop, self._settings = loop, loop.settings
         self._pressed_n = 0.0
-        """With which the last motion pressed, and a push sideways goes on to press."""
+        """Force with which the last motion pressed; a push sideways goes on to press with it."""
 
     async def move_free(
         self, task_position_tip_m: Vector, task_rotation_tip_rad: Vector, speed_m_s: float

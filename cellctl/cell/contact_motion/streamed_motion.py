@@ -29,7 +29,7 @@ class Press:
     admittance: Admittance
     ramp: PushRamp
     watch: ContactWatch | None = None
-    """Of the force along z, where losing the contact is a fault."""
+    """Watches the force along z, where losing the contact is a fault."""
 
 
 @dataclass(slots=True, eq=False)
@@ -38,9 +38,9 @@ class StreamedMotion:
 
     loop: ContactLoop
     path: PathFollower
-    """Of the nominal tip, points of shape (6,)."""
+    """The way of the nominal tip, points of shape (6,)."""
     speed: Callable[[ContactSample], float]
-    """Of the path, in its unit; asked at every tick."""
+    """Speed along the path, in its unit; asked at every tick."""
     end: End
     limit_s: float
     press: Press | None = None
@@ -50,7 +50,8 @@ class StreamedMotion:
     _braking: bool = field(default=False, init=False)
 
     async def run(self) -> ContactMotion:
-        """Until its end, and then until the setpoint stands; raises the faults of the contact."""
+        """Run until the end, and then until the setpoint stands; raises the faults of the
+        contact."""
         samples: list[ContactSample] = []
         begun_s = self.loop.sample.time_s
         while True:

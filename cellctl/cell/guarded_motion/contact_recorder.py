@@ -55,7 +55,7 @@ class ContactRecorder:
         return float(np.interp(time_s, self._times, self._travels))
 
     def curve(self) -> ForceCurve:
-        """All that was recorded so far."""
+        """Everything that was recorded so far."""
         self._take_travel()
         self._take_samples()
         if not self._chunks:

@@ -22,7 +22,7 @@ class GuardPort(Protocol):
         ...
 
     def samples(self, since_s: float) -> GuardSamples:
-        """All samples after a time."""
+        """All samples later than a time."""
         ...
 
     def health(self) -> GuardHealth:

@@ -30,14 +30,14 @@ GuardedMove = Callable[[Motion], Awaitable[None]]
 
 @dataclass(frozen=True, slots=True)
 class WrenchTolerance:
-    """By how much each component of the wrench in its frame may change, either way."""
+    """Largest change of each component of the wrench in its frame, either way."""
 
     force_n: float
     moment_n_m: float
 
     @property
     def limits(self) -> Six:
-        """The same for each axis: N, N, N, N·m, N·m, N·m."""
+        """The tolerance of each component: N, N, N, N·m, N·m, N·m."""
         return (*(self.force_n,) * 3, *(self.moment_n_m,) * 3)
 
 

@@ -22,7 +22,7 @@ for is 20 um/s."""
 
 @dataclass(frozen=True, slots=True)
 class StandingTime:
-    """For how long an arm may stand within a move, as at a speed override of zero."""
+    """How long an arm may stand within a move, as at a speed override of zero."""
 
     most_s: float = 30.0
     look_s: float = 0.5

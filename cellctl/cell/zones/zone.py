@@ -20,10 +20,10 @@ _FACES = {
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Share:
-    """Where one robot is in a zone."""
+    """The part of one robot in a zone."""
 
     box: Box
-    """For the flange, in the base of the robot."""
+    """Box in which the flange is inside the zone, in the base of the robot."""
     clear_poses_rad: tuple[Array, ...]
     """Joints, each of shape (6,), between which joint moves stay out of the zone."""
     way_out: tuple[int, bool] | None = None
@@ -41,7 +41,7 @@ class Zone:
 
     name: str
     shares: Mapping[str, Share]
-    """By the name of the robot."""
+    """Shares by the name of the robot."""
     wait_s: float
     retreat: tuple[str, ...] = ()
     """Robots in the order in which they leave when more than one of them is inside."""

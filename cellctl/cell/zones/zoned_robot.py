@@ -32,17 +32,18 @@ class ZonedRobot(RobotLayer):
         self._stops = 0
 
     async def disconnect(self) -> None:
-        """As the driver does; a move that waits is given up."""
+        """Disconnect; a move that waits for a zone is given up."""
         self._stops += 1
         await super().disconnect()
 
     async def stop(self) -> None:
-        """As the driver does; a move that waits is given up."""
+        """Stop; a move that waits for a zone is given up."""
         self._stops += 1
         await super().stop()
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
-        """With all zones on the way by forward kinematics, else by the taught poses."""
+        """Move once all zones on the way are granted: the way by forward kinematics, else the
+        taught poses."""
         return await self._move(
             lambda: joint_way(self.state(REPORT_AGE_S), joints_rad, self._kinematics),
             lambda: self._robot.move_joint(joints_rad, speed_ratio=speed_ratio),
@@ -51,7 +52,7 @@ class ZonedRobot(RobotLayer):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """With all zones on the straight line."""
+        """Move once all zones on the straight line are granted."""
         return await self._move(
             lambda: linear_way(self.state(REPORT_AGE_S), base_T_flange),
             lambda: self._robot.move_linear(
@@ -60,7 +61,7 @@ class ZonedRobot(RobotLayer):
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        """With all zones on the straight line."""
+        """Move once all zones on the straight line are granted."""
         return await self._move(
             lambda: linear_way(self.state(REPORT_AGE_S), base_T_flange),
             lambda: self._robot.step(base_T_flange, speed_m_s=speed_m_s),
@@ -95,7 +96,7 @@ class ZonedStreamingRobot(ZonedRobot, StreamingRobotLayer):
 
     @asynccontextmanager
     async def stream(self, limits: StreamLimits) -> AsyncIterator[PoseStream]:
-        """With all zones that its setpoints may reach."""
+        """Stream once all zones that its setpoints may reach are granted."""
         async with (
             self._passage(lambda: stream_way(self.state(REPORT_AGE_S), limits.travel_m)),
             self._streaming.stream(limits) as stream,

@@ -54,7 +54,7 @@ class ArmChain:
 
     @property
     def length_m(self) -> float:
-        """Of all links one after another: no flange is farther from its base."""
+        """Length of all links one after another: no flange is farther from its base."""
         return float(np.hypot(self.dh[:, 1], self.dh[:, 2]).sum())
 
 

@@ -36,12 +36,12 @@ class WaySteps:
 
 @dataclass(frozen=True, slots=True)
 class BrokenWay:
-    """Where the arm can no longer follow a way."""
+    """The place at which the arm can no longer follow a way."""
 
     share: float
-    """Of the way, 0 to 1."""
+    """Share of the way up to there, 0 to 1."""
     why: str
-    """In words."""
+    """The reason in words."""
 
 
 def linear_joint_way(

@@ -10,7 +10,7 @@ from cellctl.geometry.pose import Array
 
 _ROUNDS = 60
 _CLOSE = 1e-9
-"""In m and rad."""
+"""Distance from the target, in m and rad, at which it counts as reached."""
 _DAMPED = 1e-4**2 * np.eye(6)
 _GREATEST_STEP_RAD = 0.3
 
@@ -43,9 +43,10 @@ def _error(here: Array, target: Array) -> Array:
 
 
 def _rotation_vector(turn: Array) -> Array:
-    """Of a rotation matrix, shape (3, 3).
+    """Rotation vector of a rotation matrix, shape (3, 3).
 
-    By its skew part, which is faster than the general way. Near half a turn it says nothing.
+    It is taken from the skew part, which is faster than the general way. Near half a turn it says
+    nothing.
     """
     twice_sine = np.array(
         [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]
