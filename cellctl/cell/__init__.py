@@ -2,5 +2,6 @@
 
 ``devices`` builds and connects them; ``robot_layers`` and ``zones`` stand between a command and the
 driver of a robot. ``guarded_motion`` moves through free air under force limits, ``contact_motion``
-moves in contact. ``standstill`` and ``readiness`` say whether the cell is unmoved and ready.
+moves in contact. ``lighting`` sees to lamps and exposures. ``standstill`` and ``readiness`` say
+whether the cell is unmoved and ready.
 """

@@ -11,7 +11,7 @@ from cellctl import log
 from cellctl.cell.driver_object import drivers_of
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.cell.lit_cameras import Lights
+from cellctl.cell.lighting.lit_cameras import Lights
 from cellctl.cell.patience.calls import answer_within
 from cellctl.cell.patience.patient_devices import (
     PatientCamera,

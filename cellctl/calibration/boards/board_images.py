@@ -12,8 +12,8 @@ from cellctl.calibration.boards.board import (
     CameraView,
     Corners,
 )
-from cellctl.calibration.boards.board_search import name_chessboard
-from cellctl.calibration.boards.corner_detection import detect_corners, why_no_corners
+from cellctl.calibration.boards.corners.board_search import name_chessboard
+from cellctl.calibration.boards.corners.corner_detection import detect_corners, why_no_corners
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
 from cellctl.interfaces.stereo_camera import Image

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from cellctl.calibration.boards.board import CalibrationBoard, Circles, Corners
-from cellctl.calibration.boards.circle_centres import centre_offsets
+from cellctl.calibration.boards.corners.circle_centres import centre_offsets
 from cellctl.errors.calibration import SolveFailed
 from cellctl.geometry.pose import Array
 

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.live import Live
 
 from cellctl.calibration.boards.board import CalibrationBoard
-from cellctl.cell.auto_exposure import Looked, found_exposure
+from cellctl.cell.lighting.auto_exposure import Looked, found_exposure
 from cellctl.cli.cameras.focus_screen import screen
 from cellctl.cli.cameras.focus_view import FocusView, HolesWanted, looked_at
 from cellctl.cli.cameras.opening import CameraName, CellFile, Chosen, HeadName, chosen

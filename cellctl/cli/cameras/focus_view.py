@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from cellctl.calibration.boards.board import CalibrationBoard
-from cellctl.calibration.boards.corner_detection import detect_corners
+from cellctl.calibration.boards.corners.corner_detection import detect_corners
 from cellctl.cli.cameras.opening import Exposed, View
 from cellctl.vision.camera.setting_up import ImageFigures, image_figures, overlap_share
 from cellctl.vision.holes.candidates import find_candidates, outermost

@@ -10,7 +10,7 @@ import typer
 from numpy.typing import NDArray
 
 from cellctl.cell.driver_object import driver_object
-from cellctl.cell.lit_cameras import Lights
+from cellctl.cell.lighting.lit_cameras import Lights
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.devices import CameraConfig
 from cellctl.errors.config import DeviceNotInCell

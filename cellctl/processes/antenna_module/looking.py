@@ -9,9 +9,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.solvers.pose_average import average
-from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.cell.standstill import require_unmoved
 from cellctl.clock import now_s, utc_at
 from cellctl.geometry.pose import MM, Array, pose_error, pose_from_xyzabc

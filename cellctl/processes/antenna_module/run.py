@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 from typing import Self
 
-from cellctl.cell.auto_exposure import RunExposures
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.processes.antenna_module.drawings import Drawings
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.last_check import LastCheck

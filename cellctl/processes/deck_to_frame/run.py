@@ -7,9 +7,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.guarded_motion.settling import settle
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.errors import CellError
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg

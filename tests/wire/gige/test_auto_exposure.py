@@ -9,8 +9,8 @@ import cv2
 import numpy as np
 import pytest
 
-from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.devices import Cell
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors.camera import ExposureNotAdjustable, ExposureNotReached
 from cellctl.errors.link import LinkLost

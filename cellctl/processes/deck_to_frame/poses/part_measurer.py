@@ -8,8 +8,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
-from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.cell.standstill import require_unmoved
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.geometry.pose import MM, Array

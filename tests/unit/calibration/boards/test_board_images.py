@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco
 from cellctl.calibration.boards.board_images import BoardImages, detect_views
-from cellctl.calibration.boards.corner_detection import detect_corners
+from cellctl.calibration.boards.corners.corner_detection import detect_corners
 from cellctl.errors.calibration import BoardNotFound, MixedImageSizes, TooFewViews, WrongBoard
 from cellctl.errors.vision import ImageBlack, ImageSaturated
 

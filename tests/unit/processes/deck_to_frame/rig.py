@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.cell.auto_exposure import RunExposures
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.force.contact.seat import SeatVerdict
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan

@@ -6,7 +6,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from cellctl.cell.auto_exposure import RunExposures
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.errors.link import ReplyTimeout, StaleData
 from cellctl.errors.robot import HeadMoved
 from cellctl.errors.vision import HoleMissing

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from cellctl.cell.light import Light
+from cellctl.cell.lighting.light import Light
 from cellctl.config.devices import CameraConfig, LightConfig
 from cellctl.errors import CellError
 from cellctl.errors.digital_io import SignalUnknown

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from cellctl.cell.devices import Cell
-from cellctl.cell.light import Light
-from cellctl.cell.lit_cameras import LitCamera, LitHead
+from cellctl.cell.lighting.light import Light
+from cellctl.cell.lighting.lit_cameras import LitCamera, LitHead
 from cellctl.clock import now_s
 from cellctl.config import CellConfig
 from cellctl.config.checks.cross_checks import cross_issues

@@ -4,10 +4,10 @@ import cv2
 import numpy as np
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco, Corners, Ids
-from cellctl.calibration.boards.board_search import find_chessboard, why_no_chessboard
-from cellctl.calibration.boards.circle_centres import measured_rims
-from cellctl.calibration.boards.circle_search import find_circles
-from cellctl.calibration.boards.corner_saddle import saddle_points
+from cellctl.calibration.boards.corners.board_search import find_chessboard, why_no_chessboard
+from cellctl.calibration.boards.corners.circle_centres import measured_rims
+from cellctl.calibration.boards.corners.circle_search import find_circles
+from cellctl.calibration.boards.corners.corner_saddle import saddle_points
 from cellctl.errors.calibration import BoardMirrored, WrongBoard
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image

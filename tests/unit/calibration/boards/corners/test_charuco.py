@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from cellctl.calibration.boards.board import CalibrationBoard, Charuco
-from cellctl.calibration.boards.corner_detection import detect_corners
+from cellctl.calibration.boards.corners.corner_detection import detect_corners
 from cellctl.errors.calibration import BoardMirrored
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image

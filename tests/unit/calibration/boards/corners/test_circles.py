@@ -8,8 +8,8 @@ import pytest
 from cellctl.calibration.boards.board import CalibrationBoard, Circles, Corners, Ids
 from cellctl.calibration.boards.board_images import BoardImages, detect_views
 from cellctl.calibration.boards.board_shape import BoardShape, shape_modes
-from cellctl.calibration.boards.circle_centres import centre_offsets
-from cellctl.calibration.boards.corner_detection import detect_corners
+from cellctl.calibration.boards.corners.circle_centres import centre_offsets
+from cellctl.calibration.boards.corners.corner_detection import detect_corners
 from cellctl.errors.calibration import BoardMirrored, WrongBoard
 from cellctl.geometry.pose import Array
 from fakes.world.scene import LensTruth

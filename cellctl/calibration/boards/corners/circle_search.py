@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.calibration.boards.board import CalibrationBoard
-from cellctl.calibration.boards.circle_centres import Rims
+from cellctl.calibration.boards.corners.circle_centres import Rims
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from cellctl.cell.auto_exposure import RunExposures
 from cellctl.cell.devices import Cell
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.clock import now_s
 from cellctl.config import CellConfig
 from cellctl.config.checks.cross_checks import cross_issues
