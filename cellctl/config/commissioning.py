@@ -34,7 +34,7 @@ def examine_before_commissioning(path: Path) -> Examination:
     """Errors and remarks of a cell file; touches no hardware. Raises ``ConfigUnreadable``."""
     found, cell, lines = examine(path)
     if cell is not None:
-        found += unpermitted(cell, bad_devices(found))
+        found += unpermitted(cell)
         found += unless_named(found, list(_implausible(cell, path, found)))
     remarks = [] if cell is None or found else list(_remarks(cell, path))
     return Examination(tuple(placed(found, lines)), tuple(placed(remarks, lines)), cell)

@@ -52,6 +52,13 @@ def first_link_mm(robot: RobotConfig) -> tuple[float | None, float | None]:
     )
 
 
+def reach_m(robot: RobotConfig) -> float | None:
+    """Length of all links, farther than which no pose comes; None where nothing describes them."""
+    driver, settings = robot_driver(robot)
+    chain = driver.chain(settings)
+    return None if chain is None else chain.length_m
+
+
 def sets_exposures(group: str, camera: CameraConfig) -> bool:
     """Whether the driver can set an exposure; True for one that is unknown, which is another fault.
 

@@ -13,6 +13,7 @@ from cellctl.config.base import Section
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.addresses import address_issues
 from cellctl.config.checks.cross_checks import cross_issues
+from cellctl.config.checks.protective_times import protective_time_issues
 from cellctl.config.checks.robot_figures import robot_issues
 from cellctl.config.checks.taught_poses import taught_pose_issues
 from cellctl.config.checks.units import unit_issues
@@ -96,6 +97,9 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
     bad = bad_devices(found)
     for index, recipe in enumerate(cell.recipes):
         found += _process_issues(cell, recipe, f"recipes.{index}", folder, bad)
+    # Of all that is only implausible these alone keep a daemon from its cell: a time that is too
+    # long protects nothing, and nothing in the work of a year shows it.
+    found += unless_named(found, list(protective_time_issues(cell, bad)))
     # Last: a device at a wrong address still belongs where the process wants it or not.
     return [*found, *address_issues(cell)], cell
 

@@ -3,12 +3,14 @@
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
+from pydantic import ValidationError
+
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.exposures import exposure_issues
 from cellctl.config.checks.outputs import output_issues
 from cellctl.config.driver_settings import least_stale_ms, robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.errors.config import MixedSimulation
+from cellctl.errors.config import MixedSimulation, UnknownDriver
 from cellctl.spelling import nearest
 
 
@@ -64,15 +66,15 @@ def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
             yield ConfigIssue(key, repr(sensor.mounted_on), "a robot carries one force sensor")
 
 
-def unpermitted(cell: CellConfig, bad: set[str]) -> Iterator[ConfigIssue]:
-    """Real robots that only programs of their controllers would stop without this PC.
-
-    ``bad`` holds the paths of devices whose settings are wrong themselves.
-    """
+def unpermitted(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Real robots that only programs of their controllers would stop without this PC."""
     for name, robot in cell.robots.items():
-        if robot.simulated or robot.permit is not None or f"robots.{name}" in bad:
+        if robot.simulated or robot.permit is not None:
             continue
-        driver, settings = robot_driver(robot)
+        try:
+            driver, settings = robot_driver(robot)
+        except (UnknownDriver, ValidationError):
+            continue  # reported by itself
         if driver.needs_permit(settings):
             allowed = (
                 "{ device, output }: a contact of this PC in the arm's permit loop, which stops it "

@@ -15,12 +15,16 @@ from cellctl.config.issue import ConfigIssue
 
 _PREFIX = 24
 """Of the usual network of a machine."""
+_PAIRS = (("open_valve", "close_valve"), ("opened_sensor", "closed_sensor"))
+_CHANNELS = 8
+"""Of one terminal of a coupler."""
 _COUPLERS = (plugins.GRIPPER, plugins.DIGITAL_IO)
 
 
 def cell_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Remarks on what belongs to no process; fake cells, all of whose addresses are of this PC,
-    have none."""
+    """Remarks on what belongs to no process; of fake cells, all of whose addresses are of this PC,
+    none on these."""
+    yield from _gripper_channels(cell)
     if cell.simulated:
         return
     yield from _open_to_all(cell)
@@ -68,3 +72,29 @@ def _shared_hosts(cell: CellConfig) -> Iterator[ConfigIssue]:
         for path in paths[1:]:
             said = f"{paths[0]} is at this address, too: right where one server serves both"
             yield ConfigIssue(f"{path}.settings.host", repr(host), said)
+
+
+def _gripper_channels(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Valves wired in one order and sensors in the other, and a channel far from the others.
+
+    By convention drivers of grippers with two valves and two sensors name them so. A gripper that
+    closes when it should open comes down onto its part with closed jaws.
+    """
+    for name, gripper in cell.grippers.items():
+        path, settings = f"grippers.{name}.settings", gripper.settings
+        channels = {key: settings[key] for pair in _PAIRS for key in pair if key in settings}
+        if len(channels) < 4 or not all(isinstance(one, int) for one in channels.values()):
+            continue
+        falls = [channels[first] > channels[second] for first, second in _PAIRS]
+        if falls[0] != falls[1]:
+            said = (
+                "the valves are in one order of opening and closing and the sensors in the other: "
+                "right if they are wired so; exchanged, it closes when it is to open"
+            )
+            yield ConfigIssue(f"{path}.close_valve", str(channels["close_valve"]), said)
+        for first, second in _PAIRS:
+            if abs(channels[first] - channels[second]) >= _CHANNELS:
+                said = (
+                    f"{_CHANNELS} channels or more from {first}: right if it is on another terminal"
+                )
+                yield ConfigIssue(f"{path}.{second}", str(channels[second]), said)

@@ -63,12 +63,26 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         cell: CellConfig,
         recipe: Recipe,
         key: str,
-        folder: Path,  # noqa: ARG003 - no files
+        folder: Path,
     ) -> Iterable[ConfigIssue]:
-        """Tray and socket within the reach of the arm."""
+        """Figures and poses that fit their own keys and not each other."""
         from cellctl.processes.antenna_module.checks.plausible import plausible_issues
 
-        return plausible_issues(cell, cast(AntennaRecipe, recipe), key)
+        return plausible_issues(cell, cast(AntennaRecipe, recipe), key, folder)
+
+    @classmethod
+    def remarks(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        key: str,  # noqa: ARG003 - settings alone
+        folder: Path,
+    ) -> Iterable[ConfigIssue]:
+        """Another board than that of the stored cameras."""
+        from cellctl.processes.antenna_module.checks.figures import board_remarks
+
+        settings = cast(AntennaSettings, cell.processes[recipe.process])
+        return board_remarks(cell, settings, f"processes.{recipe.process}", folder)
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

@@ -62,12 +62,21 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         cell: CellConfig,
         recipe: Recipe,
         key: str,
-        folder: Path,  # noqa: ARG003 - no files
+        folder: Path,
     ) -> Iterable[ConfigIssue]:
-        """A hole within the reach of the arm, and touches beside it."""
-        from cellctl.processes.peg_in_hole.plausible import plausible_issues
+        """Figures and poses that fit their own keys and not each other."""
+        from cellctl.processes.peg_in_hole.plausible.findings import plausible_issues
 
-        return plausible_issues(cell, cast(PegRecipe, recipe), key)
+        return plausible_issues(cell, cast(PegRecipe, recipe), key, folder)
+
+    @classmethod
+    def remarks(
+        cls, cell: CellConfig, recipe: Recipe, key: str, folder: Path
+    ) -> Iterable[ConfigIssue]:
+        """A wide fit, keys that need no turn, an arm that is softer than most."""
+        from cellctl.processes.peg_in_hole.plausible.remarks import recipe_remarks
+
+        return recipe_remarks(cell, cast(PegRecipe, recipe), key, folder)
 
     @classmethod
     def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:

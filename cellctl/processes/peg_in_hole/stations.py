@@ -51,9 +51,14 @@ def peg_recipes(config: CellConfig) -> tuple[PegRecipe, ...]:
     return tuple(recipe for recipe in config.recipes if isinstance(recipe, PegRecipe))
 
 
+def tip_at_hole(recipe: PegRecipe) -> RigidTransform:
+    """base_T_tip with the tip in the middle of the hole's face, as it is believed to be."""
+    return pose_from_xyzabc(recipe.base_T_hole.pose) * RigidTransform.from_rotation(OVER)
+
+
 def believed_frames(recipe: PegRecipe, base_T_flange: RigidTransform) -> ContactFrames:
     """Frame A at the believed place, z into the hole; the attitude is the flange's present one."""
-    base_T_task = pose_from_xyzabc(recipe.base_T_hole.pose) * RigidTransform.from_rotation(OVER)
+    base_T_task = tip_at_hole(recipe)
     flange_T_tip = pose_from_xyzabc(recipe.flange_T_tip)
     task_T_tip = base_T_task.inv() * base_T_flange * flange_T_tip
     return ContactFrames(base_T_task, flange_T_tip, task_T_tip.rotation)

@@ -15,6 +15,7 @@ from tests.unit.config.mistakes import MISTAKES
 from tests.unit.config.protective_mistakes import PROTECTIVE
 from tests.unit.config.second_look_figures import FIGURES, OTHERS
 from tests.unit.config.second_look_places import PLACES
+from tests.unit.config.single_figures import SINGLE_FIGURES
 from tests.unit.config.third_day import IN_CELL_FILES, IN_DRAWINGS
 from tests.unit.config.undecided import UNDECIDED
 
@@ -44,7 +45,7 @@ def written(
 
 SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
-ALL = MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE
+ALL = MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES
 
 
 def test_there_are_more_than_sixty_half_by_somebody_else_and_all_differ() -> None:

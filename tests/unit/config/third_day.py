@@ -298,7 +298,7 @@ _LIMITS = (
         "face_radius_mm = 8.0",
         "face_radius_mm = 2.0",
         "recipes.0.base_T_hole.face_radius_mm",
-        "at least 6.05",
+        "at least 7.65",
     ),
 )
 

@@ -103,21 +103,41 @@ UNDECIDED = (
         Mistake(
             "insertion-pin.toml",
             "clearance_mm = 0.05",
-            "clearance_mm = 0.5",
+            "clearance_mm = 0.3",
             "recipes.0.fit.clearance_mm",
-            "",
+            "wider than the fits of parts of this size",
         ),
         "a wider clearance: such parts exist, and the seat is judged by force",
     ),
     Undecided(
         Mistake(
             "insertion-pin.toml",
-            "stiffness_n_mm = 120.0",
-            "stiffness_n_mm = 12.0",
+            'calibration_dir = "insertion-pin-calibration"\n',
+            'calibration_dir = "none"\n',
             "processes.peg-in-hole.stiffness_n_mm",
             "",
         ),
-        "a soft small arm: there are such arms; procedure 301 measures it before anything else",
+        "a cell whose loop was not measured yet: the bounds of its file count",
+    ),
+    Undecided(
+        Mistake(
+            "antenna.toml",
+            "open_valve = 0\nclose_valve = 1",
+            "open_valve = 1\nclose_valve = 0",
+            "grippers.gripper.settings.close_valve",
+            "closes when it is to open",
+        ),
+        "valves exchanged against the sensors: they may be wired so",
+    ),
+    Undecided(
+        Mistake(
+            "antenna.toml",
+            "opened_sensor = 0\nclosed_sensor = 1",
+            "opened_sensor = 1\nclosed_sensor = 0",
+            "grippers.gripper.settings.close_valve",
+            "closes when it is to open",
+        ),
+        "sensors exchanged against the valves: they may be wired so",
     ),
     Undecided(
         deck(

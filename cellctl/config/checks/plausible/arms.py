@@ -8,7 +8,7 @@ import numpy as np
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import RobotConfig
-from cellctl.config.driver_settings import robot_driver
+from cellctl.config.driver_settings import reach_m
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
 
@@ -50,21 +50,13 @@ def _joint_bounds(path: str, settings: dict[str, Any]) -> Iterator[ConfigIssue]:
 
 
 def _boxes(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
-    reach_mm = _reach_mm(robot)
+    long_m = reach_m(robot)
+    reach_mm = _LONGEST_REACH_MM if long_m is None else long_m / MM
     for key, value in robot.settings.items():
         corner = key.endswith(("workspace_min_mm", "workspace_max_mm"))
         if corner and isinstance(value, list) and _largest(value) > reach_mm:
             allowed = f"within {reach_mm:.0f} mm of the base, which is as far as the arm reaches"
             yield ConfigIssue(f"{path}.{key}", str(value), allowed)
-
-
-def _reach_mm(robot: RobotConfig) -> float:
-    driver, settings = robot_driver(robot)
-    chain = driver.chain(settings)
-    if chain is None:
-        return _LONGEST_REACH_MM
-    # Stretched out, were all links in one line: no pose comes farther.
-    return float(np.sum(np.abs(chain.dh[:, 1:3]))) / MM
 
 
 def _largest(numbers: list[Any]) -> float:

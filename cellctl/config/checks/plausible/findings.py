@@ -9,9 +9,9 @@ from cellctl.config.checks.plausible.line import line_issues
 from cellctl.config.checks.plausible.loads import load_issues
 from cellctl.config.checks.plausible.mounted import mounted_issues
 from cellctl.config.checks.plausible.places import place_issues
-from cellctl.config.checks.plausible.protective_times import protective_time_issues
 from cellctl.config.checks.plausible.recipes import recipe_issues
 from cellctl.config.checks.plausible.sensors import sensor_issues
+from cellctl.config.checks.plausible.speed_bounds import speed_bound_issues
 from cellctl.config.checks.plausible.waits import wait_issues
 from cellctl.config.checks.plausible.ways_out import way_out_issues
 from cellctl.config.issue import ConfigIssue
@@ -31,5 +31,5 @@ def plausibility_issues(cell: CellConfig, folder: Path, bad: Set[str]) -> Iterat
     yield from sensor_issues(cell, bad)
     yield from recipe_issues(cell)
     yield from wait_issues(cell, bad)
-    yield from protective_time_issues(cell, bad)
+    yield from speed_bound_issues(cell, bad)
     yield from place_issues(cell, folder)

@@ -10,6 +10,8 @@ from cellctl.config.issue import ConfigIssue
 _LEAST_RATE_HZ = 100.0
 """A tenth of a guard's usual rate: at 10 ms from sample to sample an arm at the speed of a touch
 (below 1 mm/s) has gone a hundredth of a millimetre, at 100 ms enough for the whole limit."""
+_MOST_OVER_OTHERS = 5.0
+"""Of a sensor's data sheet: along its axis it carries about twice as much as across."""
 
 
 def sensor_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
@@ -34,6 +36,15 @@ def _range(path: str, sensor: ForceSensorConfig) -> Iterator[ConfigIssue]:
     measuring = sensor.settings.get("range")
     if not isinstance(measuring, list) or len(measuring) != 6:
         return
+    for three in (measuring[:3], measuring[3:]):
+        if max(three) > _MOST_OVER_OTHERS * min(three):
+            # With a range that the sensor does not have, a clipped force is taken for a true one.
+            allowed = (
+                f"three forces, then three moments, of the sensor's data sheet; {max(three):g} is "
+                f"more than {_MOST_OVER_OTHERS:g} times {min(three):g}"
+            )
+            yield ConfigIssue(f"{path}.settings.range", str(measuring), allowed)
+            return
     limits = {
         "free_force_n": (sensor.free_force_n, min(measuring[:3]), "N"),
         "free_moment_n_m": (sensor.free_moment_n_m, min(measuring[3:]), "N·m"),

@@ -31,7 +31,7 @@ _LEAST_SLOPE = 0.3
 """Rise of the force at the seat over the stiffness of arm and contact."""
 _LEAST_SIGMAS = 5.0
 """By so many standard deviations a living sensor's force changes at least between two pushes."""
-_MOST_OF_GRIP = 0.6
+MOST_OF_GRIP = 0.6
 """Greatest force over that at which the part slips; the limit of an insertion is to be set to no
 more (section 4.5)."""
 
@@ -156,7 +156,7 @@ def _slip_check(evidence: InsertionEvidence) -> LimitCheck:
     """Either no force could make the part slip, or a touch shows that it did not."""
     # A grip force of 0 is as unknown as none: no number, so that the check fails.
     ratio = _known(evidence.greatest_force_n) / (evidence.grip_force_n or nan)
-    by_force = LimitCheck(SLIP, ratio, _MOST_OF_GRIP, "")
+    by_force = LimitCheck(SLIP, ratio, MOST_OF_GRIP, "")
     if by_force.passed:
         return by_force
     return LimitCheck(RETOUCH, abs(_known(evidence.retouch_error_m)) / _MM, _RETOUCH_MM, "mm")

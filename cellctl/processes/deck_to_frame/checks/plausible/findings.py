@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import cast
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.bound import bound_issues
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
@@ -12,6 +13,7 @@ from cellctl.processes.deck_to_frame.checks.plausible.drawings import drawing_is
 from cellctl.processes.deck_to_frame.checks.plausible.face import face_issues
 from cellctl.processes.deck_to_frame.checks.plausible.limits import limit_issues
 from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
+from cellctl.processes.deck_to_frame.checks.plausible.sigmas import sigma_bounds
 from cellctl.processes.deck_to_frame.checks.plausible.station import station_issues
 from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_issues
 from cellctl.processes.deck_to_frame.checks.plausible.zones import zone_use_issues
@@ -37,6 +39,7 @@ def plausible_issues(
     yield from _thresholds(recipe, key)
     yield from _thickness(recipe, key, folder)
     yield from limit_issues(recipe, key)
+    yield from bound_issues(sigma_bounds(recipe, key))
     yield from face_issues(recipe, key, read_features(folder / recipe.deck_features))
     loads = list(load_issues(cell, recipe, key))
     yield from loads

@@ -1,8 +1,9 @@
 """Thresholds, tolerances and limits of a recipe against each other."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 
+from cellctl.config.checks.bound import Bound, bound_issues
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.reach import BESIDE_MM, TURNED_DEG
@@ -10,67 +11,61 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
 _MOST_OVER_THRESHOLD = 10.0
 """A verdict that is so much wider than what the correction reaches judges nothing."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Bound:
-    """One figure of a recipe, and what it must keep."""
-
-    key: str
-    value: float
-    why: str
-    least: float | None = None
-    most: float | None = None
+_MOST_OVER_STAND_OFF = 2.0
 
 
 def limit_issues(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
     """Each figure that fits its own range and not the other figures of the recipe."""
-    for bound in (*_verdicts(recipe), *_correction(recipe), *_forces(recipe)):
-        if bound.least is not None and bound.value < bound.least:
-            allowed = f"at least {bound.least:g}, {bound.why}"
-        elif bound.most is not None and bound.value > bound.most:
-            allowed = f"at most {bound.most:g}, {bound.why}"
-        else:
-            continue
-        yield ConfigIssue(f"{key}.{bound.key}", f"{bound.value:g}", allowed)
+    bounds = (*_verdicts(recipe), *_correction(recipe), *_forces(recipe))
+    yield from bound_issues(replace(one, key=f"{key}.{one.key}") for one in bounds)
 
 
-def _verdicts(recipe: DeckRecipe) -> Iterator[_Bound]:
+def _verdicts(recipe: DeckRecipe) -> Iterator[Bound]:
     correction = recipe.pose_correction
     most_mm = _MOST_OVER_THRESHOLD * correction.threshold_mm
     most_deg = _MOST_OVER_THRESHOLD * correction.threshold_deg
     of_mm = f"{_MOST_OVER_THRESHOLD:g} times threshold_mm, to which the deck is brought"
     of_deg = f"{_MOST_OVER_THRESHOLD:g} times threshold_deg, to which the deck is turned"
-    yield _Bound("seated_limit_mm", recipe.seated_limit_mm, of_mm, most=most_mm)
-    yield _Bound("seated_gap_limit_mm", recipe.seated_gap_limit_mm, of_mm, most=most_mm)
-    yield _Bound("seated_limit_deg", recipe.seated_limit_deg, of_deg, most=most_deg)
+    yield Bound("seated_limit_mm", recipe.seated_limit_mm, of_mm, most=most_mm)
+    yield Bound("seated_gap_limit_mm", recipe.seated_gap_limit_mm, of_mm, most=most_mm)
+    yield Bound("seated_limit_deg", recipe.seated_limit_deg, of_deg, most=most_deg)
+    if recipe.seated_limit_about_x_deg is not None:
+        most_about_x_deg = _MOST_OVER_THRESHOLD * correction.thresholds_deg[0]
+        of_about_x = f"{_MOST_OVER_THRESHOLD:g} times the threshold about x"
+        about_x_deg = recipe.seated_limit_about_x_deg
+        yield Bound("seated_limit_about_x_deg", about_x_deg, of_about_x, most=most_about_x_deg)
+    most_travel_mm = _MOST_OVER_STAND_OFF * recipe.stand_off_mm
+    of_travel = (
+        f"{_MOST_OVER_STAND_OFF:g} times stand_off_mm: the hard end of travel, if no stop is obeyed"
+    )
+    yield Bound("over_travel_mm", recipe.over_travel_mm, of_travel, most=most_travel_mm)
     view = "beyond which the heads do not see all holes"
-    yield _Bound("station_tolerance_mm", recipe.station_tolerance_mm, view, most=BESIDE_MM / 2.0)
-    yield _Bound("station_tolerance_deg", recipe.station_tolerance_deg, view, most=TURNED_DEG)
+    yield Bound("station_tolerance_mm", recipe.station_tolerance_mm, view, most=BESIDE_MM / 2.0)
+    yield Bound("station_tolerance_deg", recipe.station_tolerance_deg, view, most=TURNED_DEG)
 
 
-def _correction(recipe: DeckRecipe) -> Iterator[_Bound]:
+def _correction(recipe: DeckRecipe) -> Iterator[Bound]:
     correction = recipe.pose_correction
     for unit in ("mm", "deg"):
         threshold = float(getattr(correction, f"threshold_{unit}"))
         name = f"max_correction_{unit}"
         value = float(getattr(correction, name))
         why = f"threshold_{unit}: what may be left needs no correction"
-        yield _Bound(f"pose_correction.{name}", value, why, least=threshold)
+        yield Bound(f"pose_correction.{name}", value, why, least=threshold)
     frames, most = correction.frames, correction.max_frames
-    yield _Bound(
+    yield Bound(
         "pose_correction.frames", frames, "max_frames, after which it is given up", most=most
     )
 
 
-def _forces(recipe: DeckRecipe) -> Iterator[_Bound]:
+def _forces(recipe: DeckRecipe) -> Iterator[Bound]:
     mating = recipe.mating
     target_n, limit_n = mating.target_force_n, mating.limit_force_n
-    yield _Bound("mating.touch_force_n", mating.touch_force_n, "target_force_n", most=target_n)
-    yield _Bound(
+    yield Bound("mating.touch_force_n", mating.touch_force_n, "target_force_n", most=target_n)
+    yield Bound(
         "mating.max_lateral_force_n", mating.max_lateral_force_n, "limit_force_n", most=limit_n
     )
     # The whole force at one end of the face, seen from the other one.
     lever_n_m = limit_n * max(recipe.face_mm) * MM
     why = "limit_force_n over the length of the face"
-    yield _Bound("mating.max_moment_n_m", mating.max_moment_n_m, why, most=lever_n_m)
+    yield Bound("mating.max_moment_n_m", mating.max_moment_n_m, why, most=lever_n_m)

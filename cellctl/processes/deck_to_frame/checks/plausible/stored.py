@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from cellctl.calibration.store.envelope import read_calibration
+from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
-from cellctl.errors import CellError
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record_names import (
     BOARD_TRANSFER_NAME,
@@ -25,10 +24,7 @@ SAME_DEG = 0.1
 
 def stored_record(cell: CellConfig, folder: Path, kind: str) -> Mapping[str, Any] | None:
     """The record of a calibration that nothing has invalidated; None where none can be read."""
-    try:
-        return read_calibration(folder / cell.calibration_dir, kind).record
-    except CellError:
-        return None  # a new cell has none; the daemon names one that is damaged
+    return readable_record(folder / cell.calibration_dir, kind)
 
 
 def stored_issues(

@@ -5,8 +5,10 @@ Drivers name such a setting as those here do; docs/guard.md, "Times that protect
 
 from collections.abc import Iterator, Set
 from dataclasses import dataclass
+from typing import TypeGuard
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.devices import GROUPS
 from cellctl.config.document.leaves import leaves
 from cellctl.config.driver_settings import checked_settings
 from cellctl.config.issue import ConfigIssue
@@ -91,10 +93,25 @@ def protective_time_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIs
     for key, value in _values(cell, bad):
         section, name = key.split(".", 1)[0], key.rsplit(".", 1)[-1]
         rule = PROTECTIVE_TIMES.get(name)
-        if rule is None or not isinstance(value, int | float) or isinstance(value, bool):
+        if rule is None or not _is_number(value):
             continue
         if not rule.sections or section in rule.sections:
             yield from _too_long(cell, key, float(value), rule)
+
+
+def most_way_mm(cell: CellConfig) -> float:
+    """That an arm of this cell may go on by itself."""
+    return MOST_WAY_SIMULATED_MM if cell.simulated else MOST_WAY_MM
+
+
+def times_alone_s(cell: CellConfig, robot: str) -> dict[str, float]:
+    """For how long an arm goes on by itself, by the key and value that say so."""
+    settings = checked_settings(GROUPS["robots"], cell.robots[robot]).model_dump()
+    return {
+        f"{key} = {value:g}": float(value) * _unit(key)[0]
+        for key, value in leaves(settings)
+        if key in PROTECTIVE_TIMES and PROTECTIVE_TIMES[key].goes_on and _is_number(value)
+    }
 
 
 def _values(cell: CellConfig, bad: Set[str]) -> Iterator[tuple[str, object]]:
@@ -112,12 +129,12 @@ def _values(cell: CellConfig, bad: Set[str]) -> Iterator[tuple[str, object]]:
 def _too_long(
     cell: CellConfig, key: str, value: float, rule: ProtectiveTime
 ) -> Iterator[ConfigIssue]:
-    unit_s, unit = (1e-3, "ms") if key.endswith("_ms") else (1.0, "s")
+    unit_s, unit = _unit(key)
     most_s = rule.most_simulated_s if cell.simulated else rule.most_s
     why = rule.why
     speed_mm_s = _fastest_mm_s(cell, key) if rule.goes_on else None
     if speed_mm_s is not None:
-        way_mm = MOST_WAY_SIMULATED_MM if cell.simulated else MOST_WAY_MM
+        way_mm = most_way_mm(cell)
         if way_mm / speed_mm_s < most_s:
             most_s = way_mm / speed_mm_s
             why = f"{why}: {way_mm:g} mm at {speed_mm_s:g} mm/s"
@@ -133,3 +150,11 @@ def _fastest_mm_s(cell: CellConfig, key: str) -> float | None:
         name = cell.force_sensors[name].mounted_on
     robot = cell.robots.get(name)
     return None if robot is None else robot.linear_speed_mm_s
+
+
+def _unit(key: str) -> tuple[float, str]:
+    return (1e-3, "ms") if key.endswith("_ms") else (1.0, "s")
+
+
+def _is_number(value: object) -> TypeGuard[float]:
+    return isinstance(value, int | float) and not isinstance(value, bool)

@@ -1,0 +1,71 @@
+"""Holds a taught pose of an arm against the place over which its tool must be there."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.driver_settings import robot_driver
+from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.geometry.pose import MM, Array
+
+BESIDE_MM, TURNED_DEG = 50.0, 10.0
+"""A pose is taught by eye over a place that a drawing gives: nearer than this it is the same."""
+HIGHEST_MM = 300.0
+"""Over a place; from higher up nobody teaches an approach."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Over:
+    """A place, and the pose that was taught over it."""
+
+    robot: str
+    pose: str
+    flange_T_tool: RigidTransform
+    base_T_tool: RigidTransform
+    """Of the tool at the place itself; its z axis leads to it."""
+    written: tuple[WrittenValue, ...]
+    """The values that the place and the tool follow from."""
+    any_turn: bool = False
+    """Whether the tool may be turned about its z axis, as a camera may that looks at the place."""
+
+
+def flange_at(cell: CellConfig, robot: str, pose: str) -> RigidTransform | None:
+    """base_T_flange at a taught pose; None where the driver's settings have no kinematics."""
+    driver, settings = robot_driver(cell.robots[robot])
+    kinematics = driver.forward_kinematics(settings)
+    if kinematics is None:
+        return None
+    joints_rad: Array = np.radians(cell.robots[robot].poses_deg[pose])
+    return kinematics(joints_rad)
+
+
+def _turned_deg(tool_T_taught: RigidTransform, *, any_turn: bool) -> float:
+    if not any_turn:
+        return float(np.degrees(tool_T_taught.rotation.magnitude()))
+    along_z = float(tool_T_taught.rotation.as_matrix()[2, 2])
+    return float(np.degrees(np.arccos(np.clip(along_z, -1.0, 1.0))))
+
+
+def over_place_issues(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:
+    """A taught pose at which the tool is beside its place, in it, turned away or far above."""
+    base_T_flange = flange_at(cell, over.robot, over.pose)
+    if base_T_flange is None:
+        return
+    tool_T_taught = over.base_T_tool.inv() * base_T_flange * over.flange_T_tool
+    x_mm, y_mm, z_mm = (float(one) for one in tool_T_taught.translation / MM)
+    turned_deg = _turned_deg(tool_T_taught, any_turn=over.any_turn)
+    beside_mm, height_mm = float(np.hypot(x_mm, y_mm)), -z_mm
+    good = beside_mm <= BESIDE_MM and 0.0 <= height_mm <= HIGHEST_MM and turned_deg <= TURNED_DEG
+    if good:
+        return
+    key = f"robots.{over.robot}.poses_deg.{over.pose}"
+    allowed = (
+        f"over the place that the recipe gives, 0 to {HIGHEST_MM:g} mm, at most {BESIDE_MM:g} mm "
+        f"beside it and turned by at most {TURNED_DEG:g} deg; here the tool is {height_mm:.0f} mm "
+        f"over it, {beside_mm:.0f} mm beside it and turned by {turned_deg:.0f} deg"
+    )
+    joints = str(list(cell.robots[over.robot].poses_deg[over.pose]))
+    yield ConfigIssue(key, joints, allowed, against=over.written)

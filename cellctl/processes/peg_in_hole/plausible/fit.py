@@ -1,0 +1,57 @@
+"""Holds the drawing of a peg and its hole against itself."""
+
+from collections.abc import Iterator
+
+from cellctl.config.checks.bound import Bound
+from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.plan.cycle_plan import fit_geometry
+from cellctl.processes.peg_in_hole.recipe import Fit, PegRecipe
+
+LEAST_FRICTION = 0.05
+"""Of a dry pair; polytetrafluoroethylene on steel, the most slippery one in use, has about 0.04."""
+_PLACES_SHARE = 0.8
+"""Of the radius that holds 99 of 100 places, the one that holds 95: 2.45 over 3.03 standard
+deviations of two equal axes."""
+
+
+def fit_bounds(recipe: PegRecipe, key: str) -> Iterator[Bound]:
+    """Chamfers, keys and outer face that this part cannot have, and touches that meet the hole."""
+    fit, where = recipe.fit, f"{key}.fit"
+    why = "half of peg_radius_mm, or the peg would have no front that stands on a face"
+    yield Bound(f"{where}.peg_chamfer_mm", fit.peg_chamfer_mm, why, most=fit.peg_radius_mm / 2)
+    entry_mm = fit_geometry(fit).entry_depth_m / MM
+    why = f"the peg is between the walls only {entry_mm:g} mm below the face, after both chamfers"
+    yield Bound(f"{where}.depth_mm", fit.depth_mm, why, least=entry_mm)
+    why = f"walls are felt by it, and no dry pair slides with less than {LEAST_FRICTION:g}"
+    yield Bound(f"{where}.friction", fit.friction, why, least=LEAST_FRICTION)
+    if fit.outer_radius_mm is not None:
+        rim_mm = fit.peg_radius_mm + fit.clearance_mm + fit.hole_chamfer_mm
+        why = "the bore with its chamfer lies within the outer face"
+        yield Bound(f"{where}.outer_radius_mm", fit.outer_radius_mm, why, least=rim_mm)
+    if fit.keys is not None:
+        why = (
+            f"keys meet their keyways after the peg has entered, before depth_mm = {fit.depth_mm:g}"
+        )
+        name = f"{where}.keys.depth_mm"
+        yield Bound(name, fit.keys.depth_mm, why, least=entry_mm, most=fit.depth_mm)
+    yield _touches(recipe, key)
+
+
+def _touches(recipe: PegRecipe, key: str) -> Bound:
+    """The foremost circle of the part, touching on a circle round the hole, must be beside it."""
+    fit, place = recipe.fit, recipe.base_T_hole
+    edge_mm = _edge_mm(fit, datum=place.datum_depth_mm > 0.0)
+    off_mm = _PLACES_SHARE * place.uncertainty_mm
+    why = (
+        f"a part of {fit.peg_radius_mm:g} mm radius that touches nearer to the middle meets the "
+        f"edge at {edge_mm:g} mm, where the hole may be {off_mm:g} mm off (uncertainty_mm = "
+        f"{place.uncertainty_mm:g}); or peg_radius_mm is a diameter"
+    )
+    least_mm = edge_mm + fit.peg_radius_mm - fit.peg_chamfer_mm + off_mm
+    return Bound(f"{key}.base_T_hole.face_radius_mm", place.face_radius_mm, why, least=least_mm)
+
+
+def _edge_mm(fit: Fit, *, datum: bool) -> float:
+    if datum and fit.outer_radius_mm is not None:
+        return fit.outer_radius_mm
+    return fit.peg_radius_mm + fit.clearance_mm + fit.hole_chamfer_mm

@@ -1,0 +1,99 @@
+"""Holds the forces of a recipe against each other, the part, and what the sensor can say."""
+
+from collections.abc import Iterator
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.plausible.loads import G_M_S2
+from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.roles import FORCE
+from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.processes.peg_in_hole.verdict.judgement import MOST_OF_GRIP
+
+_PUSHED_WITH_N = 2.0
+"""Presses the peg while it is pushed to the sides (verdict/lateral.py): no search presses less."""
+_SIGMAS = 20.0
+"""A force that is compared with thresholds of a few standard deviations lies well above them."""
+_MOST_OVER_INSERTION = 3.0
+_MOST_LEVERS = 3.0
+"""Of what the greatest force makes on the whole length of the part."""
+
+
+def force_bounds(
+    cell: CellConfig, recipe: PegRecipe, settings: PegSettings, key: str
+) -> Iterator[Bound]:
+    """Forces that judge nothing, stop nothing, or cannot be reached."""
+    yield from _contact(recipe, settings, f"{key}.forces")
+    yield from _moments(recipe, f"{key}.forces")
+    yield from _seat(recipe, settings, key)
+    yield from _sensor(cell, recipe, key)
+
+
+def _contact(recipe: PegRecipe, settings: PegSettings, where: str) -> Iterator[Bound]:
+    forces = recipe.forces
+    least_n = max(_PUSHED_WITH_N, _SIGMAS * settings.force_sigma_n)
+    why = f"what a peg is pressed with while it is pushed aside, and {_SIGMAS:g} force_sigma_n"
+    yield Bound(f"{where}.search_n", forces.search_n, why, least=least_n)
+    why = f"{_MOST_OVER_INSERTION:g} times insertion_n, where a good insertion ends"
+    most_n = _MOST_OVER_INSERTION * forces.insertion_n
+    yield Bound(f"{where}.fault_n", forces.fault_n, why, most=most_n)
+
+
+def _moments(recipe: PegRecipe, where: str) -> Iterator[Bound]:
+    """About the tip: forces at the rim of the peg, from its front to its seat."""
+    forces, fit = recipe.forces, recipe.fit
+    halfway_n_m = forces.insertion_n * (fit.peg_radius_mm + fit.depth_mm / 2) * MM
+    why = "insertion_n at the rim of a peg that is halfway in makes so much, and would be a fault"
+    yield Bound(f"{where}.fault_nm", forces.fault_nm, why, least=halfway_n_m)
+    whole_n_m = _MOST_LEVERS * forces.fault_n * (fit.peg_radius_mm + fit.depth_mm) * MM
+    why = f"{_MOST_LEVERS:g} times fault_n at the rim of the part, over its radius and depth"
+    yield Bound(f"{where}.fault_nm", forces.fault_nm, why, most=whole_n_m)
+
+
+def _seat(recipe: PegRecipe, settings: PegSettings, key: str) -> Iterator[Bound]:
+    forces, seat = recipe.forces, recipe.seat
+    why = "insertion_n, at which the feed ends: a higher limit would judge nothing"
+    yield Bound(f"{key}.seat.most_n", seat.most_n, why, most=forces.insertion_n)
+    least_n = _SIGMAS * settings.force_sigma_n
+    why = f"{_SIGMAS:g} force_sigma_n: a seat that is only noise is none"
+    yield Bound(f"{key}.seat.least_n", seat.least_n, why, least=least_n)
+    if seat.pull_n is not None:
+        why = "pull_n, which the seated part must hold, so going in takes more"
+        yield Bound(f"{key}.seat.least_n", seat.least_n, why, least=seat.pull_n)
+        why = f"{_SIGMAS:g} force_sigma_n: a pull of less proves nothing"
+        yield Bound(f"{key}.seat.pull_n", seat.pull_n, why, least=least_n)
+        why = "pull_n, which the part holds: with less it is never drawn out again"
+        yield Bound(f"{key}.forces.withdrawal_n", forces.withdrawal_n, why, least=seat.pull_n)
+    if seat.grip_n is not None:
+        least_n = forces.insertion_n / MOST_OF_GRIP
+        why = f"insertion_n over {MOST_OF_GRIP:g}, or no part could be told from one that slipped"
+        yield Bound(f"{key}.seat.grip_n", seat.grip_n, why, least=least_n)
+        why = f"{MOST_OF_GRIP:g} times grip_n: with more the gripper slips off the part"
+        most_n = MOST_OF_GRIP * seat.grip_n
+        yield Bound(f"{key}.forces.withdrawal_n", forces.withdrawal_n, why, most=most_n)
+
+
+def _sensor(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[Bound]:
+    """What the sensor clips, it neither measures nor stops at."""
+    name = recipe.device(FORCE)
+    sensor, load = cell.force_sensors[name], recipe.load
+    weight_n = load.mass_kg * G_M_S2
+    why = (
+        f"its weight of {weight_n:.0f} N comes and goes when the arm turns over, and "
+        f"force_sensors.{name}.free_force_n = {sensor.free_force_n:g} N stops free moves"
+    )
+    most_kg = sensor.free_force_n / G_M_S2
+    yield Bound(f"{key}.load.mass_kg", load.mass_kg, why, most=most_kg)
+    measuring = sensor.settings.get("range")
+    if not isinstance(measuring, list) or len(measuring) != 6:
+        return
+    clips_n = min(measuring[:3])
+    why = f"the range of force_sensors.{name}, {clips_n:g} N, less the weight of the load"
+    yield Bound(f"{key}.forces.fault_n", recipe.forces.fault_n, why, most=clips_n - weight_n)
+    if recipe.seat.grip_n is not None:
+        why = (
+            f"the range of force_sensors.{name}: more was not measured with it; a lower figure is "
+            "on the safe side"
+        )
+        yield Bound(f"{key}.seat.grip_n", recipe.seat.grip_n, why, most=clips_n)

@@ -1,0 +1,36 @@
+"""What may be meant as it stands in a recipe of this process, and is worth a second look."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import cast
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.issue import ConfigIssue
+from cellctl.processes.peg_in_hole.plausible.loop import soft_arm
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.settings import PegSettings
+
+_WIDE_MM, _WIDE_SHARE = 0.1, 0.02
+"""Radial clearance of the widest usual fits: so much, and so much of the radius."""
+
+
+def recipe_remarks(
+    cell: CellConfig, recipe: PegRecipe, key: str, folder: Path
+) -> Iterator[ConfigIssue]:
+    """Called with a file that is good."""
+    settings = cast(PegSettings, cell.processes[recipe.process])
+    fit = recipe.fit
+    usual_mm = _WIDE_MM + _WIDE_SHARE * fit.peg_radius_mm
+    if fit.clearance_mm > usual_mm:
+        said = (
+            f"wider than the fits of parts of this size, up to {usual_mm:.2g} mm; right if the "
+            "drawing has it so: a hole that is too wide is found by what exceeds it"
+        )
+        yield ConfigIssue(f"{key}.fit.clearance_mm", f"{fit.clearance_mm:g}", said)
+    if fit.keys is not None and fit.keys.window_deg >= fit.keys.uncertainty_deg:
+        said = (
+            f"keys that enter within {fit.keys.window_deg:g} deg need no turn when the plug "
+            f"arrives within uncertainty_deg = {fit.keys.uncertainty_deg:g}; right if it is so"
+        )
+        yield ConfigIssue(f"{key}.fit.keys.window_deg", f"{fit.keys.window_deg:g}", said)
+    yield from soft_arm(cell, recipe, settings, folder)

@@ -1,0 +1,83 @@
+"""Holds the limits of the arm's stream against the ways and turns of an insertion."""
+
+from collections.abc import Iterator
+from math import degrees, hypot
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.checks.over_places import Over, flange_at, over_place_issues
+from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.peg_in_hole.plan.choice import TILTED
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
+from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.roles import ABOVE_HOLE, ARM
+from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.processes.peg_in_hole.stations import tip_at_hole
+
+_TRAVEL_MM, _TRAVEL_DEG = "max_stream_travel_mm", "max_stream_travel_deg"
+
+
+def above_hole_issues(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[ConfigIssue]:
+    """A pose above the hole that is not above it."""
+    place = WrittenValue(f"{key}.base_T_hole.pose", str(list(recipe.base_T_hole.pose)))
+    tip = WrittenValue(f"{key}.flange_T_tip", str(list(recipe.flange_T_tip)))
+    over = Over(
+        recipe.device(ARM),
+        ABOVE_HOLE,
+        pose_from_xyzabc(recipe.flange_T_tip),
+        tip_at_hole(recipe),
+        (place, tip),
+    )
+    yield from over_place_issues(cell, over)
+
+
+def stream_issues(
+    cell: CellConfig, recipe: PegRecipe, settings: PegSettings, key: str
+) -> Iterator[ConfigIssue]:
+    """Ways and turns that the stream would refuse in the middle of a contact.
+
+    The driver names its limits as those of this project do; without them nothing is compared.
+    """
+    arm = recipe.device(ARM)
+    written = cell.robots[arm].settings
+    fit, place = recipe.fit, recipe.base_T_hole
+    inwards_mm = fit.depth_mm + place.uncertainty_mm
+    least_mm = {
+        "to the seat": (inwards_mm, WrittenValue(f"{key}.fit.depth_mm", f"{fit.depth_mm:g}")),
+        "to the touches of the face": (
+            _to_the_face_mm(cell, recipe, arm),
+            WrittenValue(f"{key}.base_T_hole.face_radius_mm", f"{place.face_radius_mm:g}"),
+        ),
+    }
+    travel_mm = written.get(_TRAVEL_MM)
+    for what, (way_mm, against) in least_mm.items():
+        if isinstance(travel_mm, int | float) and travel_mm < way_mm:
+            allowed = (
+                f"at least {way_mm:.0f}, the way of the stream {what}; it would end in contact"
+            )
+            where = f"robots.{arm}.settings.{_TRAVEL_MM}"
+            yield ConfigIssue(where, f"{travel_mm:g}", allowed, against=(against,))
+            break
+    turn_deg = _turn_deg(recipe, settings)
+    travel_deg = written.get(_TRAVEL_DEG)
+    if isinstance(travel_deg, int | float) and travel_deg < turn_deg:
+        allowed = f"at least {turn_deg:.1f}, by which the search tilts the part and turns its keys"
+        yield ConfigIssue(f"robots.{arm}.settings.{_TRAVEL_DEG}", f"{travel_deg:g}", allowed)
+
+
+def _to_the_face_mm(cell: CellConfig, recipe: PegRecipe, arm: str) -> float:
+    place = recipe.base_T_hole
+    base_T_flange = flange_at(cell, arm, ABOVE_HOLE)
+    if base_T_flange is None:
+        return place.face_radius_mm
+    tip = tip_at_hole(recipe).inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_tip)
+    height_mm = -float(tip.translation[2]) / MM
+    return hypot(place.face_radius_mm, max(height_mm, 0.0) + place.datum_depth_mm)
+
+
+def _turn_deg(recipe: PegRecipe, settings: PegSettings) -> float:
+    choice = cycle_plan(recipe, settings).choice
+    keys = recipe.fit.keys
+    tilts = bool(TILTED & set(choice.order))
+    tilt_deg = degrees(choice.parameters.tilt.value) if tilts else 0.0
+    return tilt_deg + (0.0 if keys is None else keys.uncertainty_deg)
