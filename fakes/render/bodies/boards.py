@@ -34,8 +34,7 @@ def draw_target_board(
         # In the plane of the board, where a disc is a circle: perspective and lens make the oval,
         # so that the centre of the image ellipse is not the image of the centre, as in reality.
         outside = coverage(np.hypot(x_disc - middle[0], y_disc - middle[1]) - radius_m)
-        grey = (1 - outside) * options.white_grey
-        patches.append(Patch.from_cells(window, outside, grey, blur_px))
+        patches.append(Patch.of_one_grey(window, outside, options.white_grey, blur_px))
     return patches
 
 

@@ -39,6 +39,12 @@ class Patch:
             window.mean(blurred_cells(grey, sigma)),
         )
 
+    @classmethod
+    def of_one_grey(cls, window: Window, outside: Array, grey: float, blur_px: float) -> Self:
+        """As ``from_cells`` for an object of one grey: one blur serves both of its arrays."""
+        through = window.mean(blurred_cells(outside, blur_px * window.sub))
+        return cls(window, through, (1 - through) * grey)
+
     def lay_over(self, image: Image, light: Image | None = None) -> None:
         """Change ``image`` in place; ``light`` falls on the object's own grey."""
         part = image[self.window.slices]

@@ -20,7 +20,15 @@ def coverage(signed: Array) -> Array:
     # In the very middle of a circle the gradient vanishes; there the distance is large and decides
     # alone.
     length = np.maximum(length, np.finfo(float).tiny)
-    return half_plane(signed / length, gradient_x / length, gradient_y / length)
+    covered = np.asarray(signed > 0, dtype=float)
+    # Only few cells of a window lie at its edge, and the share of a cell is costly. A cell whose
+    # middle is a whole cell away from the edge is not touched by it.
+    near = np.abs(signed) < length
+    there = length[near]
+    covered[near] = half_plane(
+        signed[near] / there, gradient_x[near] / there, gradient_y[near] / there
+    )
+    return covered
 
 
 def half_plane(distance: Array, normal_x: Array, normal_y: Array) -> Array:
