@@ -91,6 +91,7 @@ def test_demonstration_beside_another_one(own: OwnCell) -> None:
     assert "in use" in demo.stderr
 
 
+@pytest.mark.long
 def test_demonstration_with_a_wrong_cell_file(own: OwnCell) -> None:
     own.change("d1_mm = 1045.0", "d1_mm = -5.0")
     demo = own.demo(own.folder / "run")

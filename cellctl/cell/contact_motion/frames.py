@@ -30,7 +30,11 @@ class ContactFrames:
     def tip(self, base_T_flange: RigidTransform) -> Array:
         """Six numbers of the tip, shape (6,)."""
         task_T_tip = self._task_T_base @ base_T_flange.as_matrix() @ self._flange_T_tip
-        turned = Rotation.from_matrix(task_T_tip[:3, :3] @ self._task_R_nominal.T)
+        # Products of few rotations are rotations to the last digits. To make sure of it at every
+        # tick, as both constructors do unless told, takes four times as long as all the rest here.
+        turned = Rotation.from_matrix(
+            task_T_tip[:3, :3] @ self._task_R_nominal.T, assume_valid=True
+        )
         return np.concatenate([task_T_tip[:3, 3], turned.as_rotvec()])
 
     def base_T_flange(self, tip: Array) -> RigidTransform:
@@ -38,7 +42,8 @@ class ContactFrames:
         task_T_tip = np.eye(4)
         task_T_tip[:3, :3] = self._task_R_tip(tip)
         task_T_tip[:3, 3] = tip[:3]
-        return RigidTransform.from_matrix(self._base_T_task @ task_T_tip @ self._tip_T_flange)
+        base_T_flange = self._base_T_task @ task_T_tip @ self._tip_T_flange
+        return RigidTransform(base_T_flange, normalize=False, copy=False)
 
     def in_task(self, tip: Array, tip_wrench: Array) -> Array:
         """A wrench about the tip, turned from the axes of the tip to those of the task; (6,)."""

@@ -187,8 +187,14 @@ while delivery.deliver(3):
 
 @pytest.mark.parametrize(
     ("where", "after"),
-    [("_insert", 0), ("_insert", 5), ("_insert", 12), ("_fill", 0), ("_upsert", 0), ("_upsert", 4),
-     ("_apply", 2), ("_delivered", 3)],
+    [
+        ("_insert", 5), ("_fill", 0), ("_upsert", 4), ("_delivered", 3),
+        *(
+            pytest.param(where, after, marks=pytest.mark.long)
+            for where, after in
+            (("_insert", 0), ("_insert", 12), ("_upsert", 0), ("_apply", 2))
+        ),
+    ],
 )  # fmt: skip
 def test_a_forwarder_that_is_killed(fleet: Fleet, where: str, after: int) -> None:
     store = filled(fleet)

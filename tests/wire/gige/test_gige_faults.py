@@ -87,7 +87,7 @@ async def test_a_camera_of_another_subnet(tmp_path: Path, producer: Path) -> Non
 
 
 async def test_a_camera_out_of_reach_whose_producer_says_no_address(tmp_path: Path) -> None:
-    producer = build_producer(tmp_path, interface_xml=SOURCES / "module.xml")
+    producer = build_producer(tmp_path, "-O0", interface_xml=SOURCES / "module.xml")
     with network(tmp_path, [FakeCamera(LEFT, address="10.0.0.5"), FakeCamera(RIGHT)]):
         assert "cannot be reached" in await refused(producer, CameraOutOfReach)
         async with camera(producer, camera=Selection(serial_number=RIGHT)) as eye:
@@ -229,7 +229,7 @@ async def test_a_camera_without_clock_is_not_believed_twice(
     tmp_path: Path, fakes: FakeCameras
 ) -> None:
     """Its time stamps are all 0; the numbers of its frames tell an old image."""
-    producer = build_producer(tmp_path, "-DTICKS_PER_S=0")
+    producer = build_producer(tmp_path, "-O0", "-DTICKS_PER_S=0")
     async with camera(producer) as eye:
         image = await eye.grab()
         fakes.inject(LEFT, "stale", 1)

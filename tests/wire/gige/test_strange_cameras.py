@@ -17,6 +17,7 @@ from fakes.gentl.cameras import FakeCameras, expected_image
 from fakes.gentl.formats import Format
 from tests.wire.gige.conftest import LEFT, camera
 
+LONG = pytest.mark.long
 AUTOMATIC = """
   <Enumeration Name="ExposureAuto" NameSpace="Standard">
     <EnumEntry Name="Off" NameSpace="Standard"><Value>0</Value></EnumEntry>
@@ -32,7 +33,8 @@ AUTOMATIC = """
 def producer_of(folder: Path, description: str) -> Path:
     path = folder / "camera.xml"
     path.write_text(description, encoding="utf-8")
-    return build_producer(folder, camera_xml=path)
+    # Each of these producers serves one test: what an optimising compiler costs, it never earns.
+    return build_producer(folder, "-O0", camera_xml=path)
 
 
 def description() -> str:
@@ -77,7 +79,9 @@ async def test_no_selector_gain_or_serial_number(tmp_path: Path, fakes: FakeCame
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, "Mono8"))
 
 
-@pytest.mark.parametrize("how", ["pIsImplemented", "pIsAvailable"])
+@pytest.mark.parametrize(
+    "how", ["pIsAvailable", pytest.param("pIsImplemented", marks=pytest.mark.long)]
+)
 async def test_features_of_the_family_that_this_camera_lacks(
     tmp_path: Path, fakes: FakeCameras, how: str
 ) -> None:
@@ -159,11 +163,13 @@ async def test_an_automatic_exposure_is_switched_off_first(
         assert image.exposure.exposure_s == pytest.approx(0.003)
 
 
-@pytest.mark.parametrize("pixel_format", ["Mono8", "Mono12", "Mono12Packed"])
+@pytest.mark.parametrize(
+    "pixel_format", ["Mono12Packed", *(pytest.param(f, marks=LONG) for f in ("Mono8", "Mono12"))]
+)
 async def test_padded_lines_and_packed_samples(
     tmp_path: Path, fakes: FakeCameras, pixel_format: Format
 ) -> None:
-    producer = build_producer(tmp_path, "-DLINE_PADDING=12")
+    producer = build_producer(tmp_path, "-O0", "-DLINE_PADDING=12")
     async with camera(producer, pixel_format=pixel_format) as eye:
         image = await eye.grab()
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, pixel_format))
@@ -251,7 +257,7 @@ async def test_a_format_that_is_not_read_is_refused_before_the_first_image(
 
 
 async def test_a_clock_of_ticks(tmp_path: Path, fakes: FakeCameras) -> None:
-    producer = build_producer(tmp_path, "-DTICKS_PER_S=125000000")
+    producer = build_producer(tmp_path, "-O0", "-DTICKS_PER_S=125000000")
     async with camera(producer) as eye:
         before_s = now_s()
         image = await eye.grab()

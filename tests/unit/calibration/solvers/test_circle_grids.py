@@ -4,7 +4,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-import pytest
 
 from cellctl.calibration.boards.board import CalibrationBoard, CameraView
 from cellctl.calibration.boards.board_images import DetectedViews, detect_views
@@ -12,13 +11,14 @@ from cellctl.calibration.boards.projection import camera_vector
 from cellctl.calibration.solvers.single_camera.single_camera_calibration import (
     calibrate_single_camera,
 )
-from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from tests.rigs.calibration.circle_boards import GRID, STAGGERED, head, seen_grid
 
 HEAD = head()
 LEFT = np.array([*HEAD.left.focal_px, *HEAD.left.centre_px, *HEAD.left.distortion])
-BOARDS = pytest.mark.parametrize("board", [STAGGERED, GRID], ids=str)
+
+# Both kinds of grid are detected and solved here, but not each by both solvers: to render the pairs
+# of one takes longer than to calibrate from them.
 
 
 @cache
@@ -29,15 +29,10 @@ def detected(board: CalibrationBoard) -> DetectedViews:
     return detect_views([one.images for one in seen], board)
 
 
-def calibrated(board: CalibrationBoard, seen_as: CalibrationBoard) -> SingleCameraResult:
-    found = detected(board)
+def test_a_single_camera() -> None:
+    found = detected(GRID)
     views = [CameraView(view.name, view.left) for view in found.views]
-    return calibrate_single_camera(views, seen_as, found.image_size)
-
-
-@BOARDS
-def test_a_single_camera(board: CalibrationBoard) -> None:
-    result = calibrated(board, board)
+    result = calibrate_single_camera(views, GRID, found.image_size)
     assert result.passed, result.checks
     errors = camera_vector(result.camera.model) - LEFT
     assert result.sigma_px < 0.012
@@ -45,9 +40,9 @@ def test_a_single_camera(board: CalibrationBoard) -> None:
     assert np.abs(errors[:2]).max() < 0.2
 
 
-@BOARDS
-def test_a_head_and_what_centres_of_ellipses_would_make_of_it(board: CalibrationBoard) -> None:
+def test_a_head_and_what_centres_of_ellipses_would_make_of_it() -> None:
     """Without the correction everything fits as well, and is wrong: offsets look like a pose."""
+    board = STAGGERED
     found = detected(board)
     result = calibrate_stereo(found.views, board, found.image_size)
     assert result.passed, result.checks

@@ -20,6 +20,7 @@ from cellctl.vision.camera.lens import undistort
 from cellctl.vision.camera.stereo_head import CameraModel
 from tests.rigs.calibration import wide_lens
 
+LONG = pytest.mark.long
 LENSES = {
     LensModel.FIVE: wide_lens.FIVE,
     LensModel.RATIONAL: wide_lens.RATIONAL,
@@ -52,7 +53,9 @@ def ray_errors(found: CameraModel, truth: LensModel) -> Array:
     return np.asarray(np.linalg.norm(rays[0] @ (u @ vt) - rays[1], axis=1))
 
 
-@pytest.mark.parametrize("truth", LENSES)
+@pytest.mark.parametrize(
+    "truth", [LensModel.FIVE, LensModel.TILTED, pytest.param(LensModel.RATIONAL, marks=LONG)]
+)
 def test_a_camera_gets_the_terms_of_its_lens(truth: LensModel) -> None:
     lens, why = chosen_lens(lambda lens: of_camera(truth, lens), lambda one: one.held_out_px)
     assert lens is truth
@@ -75,7 +78,7 @@ def test_five_terms_would_leave_more(truth: LensModel) -> None:
     assert errors[1] < 0.5 * errors[0]
 
 
-@pytest.mark.parametrize("truth", [LensModel.FIVE, LensModel.RATIONAL])
+@pytest.mark.parametrize("truth", [LensModel.RATIONAL, pytest.param(LensModel.FIVE, marks=LONG)])
 def test_a_head_gets_the_terms_of_its_lenses(truth: LensModel) -> None:
     lens, _ = chosen_lens(lambda lens: of_head(truth, lens), lambda one: one.held_out_m)
     assert lens is truth
