@@ -16,10 +16,9 @@ def coverage(signed: Array) -> Array:
     counts.
     """
     gradient_y, gradient_x = np.gradient(signed)
-    length = np.hypot(gradient_x, gradient_y)
     # In the very middle of a circle the gradient vanishes; there the distance is large and decides
     # alone.
-    length = np.maximum(length, np.finfo(float).tiny)
+    length: Array = np.maximum(np.hypot(gradient_x, gradient_y), np.finfo(float).tiny)
     covered = np.asarray(signed > 0, dtype=float)
     # Only few cells of a window lie at its edge, and the share of a cell is costly. A cell whose
     # middle is a whole cell away from the edge is not touched by it.
