@@ -15,10 +15,10 @@ def coverage(signed: Array) -> Array:
     ``signed`` is any smooth function that is zero on the edge; only its ratio to its own gradient
     counts.
     """
-    gradient_y, gradient_x = np.gradient(signed)
+    gradient_y, gradient_x = (np.asarray(along) for along in np.gradient(signed))
     # In the very middle of a circle the gradient vanishes; there the distance is large and decides
     # alone.
-    length: Array = np.maximum(np.hypot(gradient_x, gradient_y), np.finfo(float).tiny)
+    length = np.asarray(np.maximum(np.hypot(gradient_x, gradient_y), np.finfo(float).tiny))
     covered = np.asarray(signed > 0, dtype=float)
     # Only few cells of a window lie at its edge, and the share of a cell is costly. A cell whose
     # middle is a whole cell away from the edge is not touched by it.
