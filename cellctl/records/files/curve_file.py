@@ -17,6 +17,7 @@ from typing import IO, Self
 import numpy as np
 from mcap.writer import CompressionType, Writer
 
+from cellctl.errors.records import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
 from cellctl.records.entries import Artefact
@@ -106,8 +107,30 @@ def read_recording(source: bytes | Path) -> Recording:
     """Read a recording as far as it goes; raises ``RecordingUnreadable`` when that is nowhere."""
     data = source if isinstance(source, bytes) else source.read_bytes()
     content = read_mcap(data)
-    names = ("time_s", "travel_mm", *_FIELDS)
-    rows = [[one.values.get(name, np.nan) for name in names] for one in content.messages]
-    table = np.array(rows, dtype=float).reshape(-1, 8)
+    rows: list[list[float]] = []
+    complete = content.complete
+    for message in content.messages:
+        row = _sample(message.values)
+        if row is None:
+            complete = False
+            break
+        rows.append(row)
+    if content.messages and not rows:
+        raise RecordingUnreadable("its first message is no sample of a force")
+    table = np.array(rows).reshape(-1, 8)
     curve = ForceCurve(table[:, 0], table[:, 2:], table[:, 1] * MM)
-    return Recording(curve, content.facts, content.complete)
+    return Recording(curve, content.facts, complete)
+
+
+def _sample(values: object) -> list[float] | None:
+    """Time, travel and wrench of a message, NaN for what it lacks; None where it is no sample."""
+    if not isinstance(values, dict):
+        return None
+    found = [values.get(name, np.nan) for name in ("time_s", "travel_mm", *_FIELDS)]
+    # True and False would pass for numbers.
+    if not all(isinstance(value, int | float) and not isinstance(value, bool) for value in found):
+        return None
+    try:
+        return [float(value) for value in found]
+    except OverflowError:
+        return None

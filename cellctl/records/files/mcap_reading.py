@@ -17,9 +17,11 @@ from cellctl.errors.records import RecordingUnreadable
 MEDIA_TYPE = "application/x-mcap"
 _RECORD_LIMIT = 16 * 1024 * 1024
 """Keeps a damaged length from asking for all of the memory."""
-_DAMAGE = (McapError, ZstdError, ValueError, KeyError, EOFError, struct.error)
+_DAMAGE = (
+    McapError, ZstdError, ValueError, KeyError, EOFError, struct.error, OverflowError, MemoryError,
+)  # fmt: skip
 """Whatever a cut off or damaged file raises in its middle: what was read before that is good, each
-chunk has a checksum of its own."""
+chunk has a checksum of its own. The last two come from lengths that no file could have."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +72,8 @@ def read_mcap(data: bytes) -> McapContent:
     try:
         for one in raw.messages:
             messages.append(RecordedMessage(one.topic, json.loads(one.data)))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
+        # Brackets within brackets without end use up Python's stack.
         complete = False
         if not messages:
             raise RecordingUnreadable(str(error)) from error
