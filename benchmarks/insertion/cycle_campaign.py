@@ -4,26 +4,21 @@ Run with ``make campaign-insertion``, or by itself: ``python -m benchmarks.inser
 -n 30``. Exit code 1 when a part is called inserted that is not.
 """
 
-import argparse
-import json
 import sys
 from collections import Counter
-from collections.abc import Sequence
-from concurrent.futures import ProcessPoolExecutor
-from functools import cache
-from multiprocessing import get_context
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from rich.console import Console
-from rich.progress import track
 from rich.table import Table
 
 from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
+from benchmarks.insertion.farmed import Line, farmed, jobs_of, parser_of, shipped_cell
 from benchmarks.insertion.wilson import wilson_bounds
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
+from fakes.scenes.socket.peaks import ForcePeaks
 
-WORKERS = 2
 CELLS = ("pin", "connector")
 TRIALS, QUICK_TRIALS = 300, 4
 _SEARCH_RATIO = 1.5
@@ -35,46 +30,28 @@ Job = tuple[str, int]
 
 def main() -> int:
     """Exit code."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--quick", action="store_true", help="few cycles")
-    parser.add_argument("-n", type=int, help=f"cycles of each cell, default {TRIALS}")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the first")
+    parser = parser_of(__doc__, "cycles", TRIALS)
     parser.add_argument("--cells", nargs="+", choices=CELLS, default=CELLS)
-    parser.add_argument("--out", type=Path, help="a file for one line of JSON per cycle")
-    arguments = parser.parse_args()
-    trials = arguments.n or (QUICK_TRIALS if arguments.quick else TRIALS)
-    jobs = [(cell, arguments.seed + n) for n in range(trials) for cell in arguments.cells]
-    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        outcomes = []
-        for job, outcome in zip(
-            jobs, track(pool.map(_run, jobs), "cycles", len(jobs)), strict=True
-        ):
-            outcomes.append(outcome)
-            if arguments.out is not None:
-                with arguments.out.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps(as_record(job[0], outcome)) + "\n")
+    found = parser.parse_args()
+    trials = found.n or (QUICK_TRIALS if found.quick else TRIALS)
+    jobs = jobs_of(found.cells, found.seed, trials)
+    outcomes = farmed(_run, jobs, "cycles", LINE, found)
     by_cell = {
         cell: [one for (name, _), one in zip(jobs, outcomes, strict=True) if name == cell]
-        for cell in arguments.cells
+        for cell in found.cells
     }
     Console(width=160).print(table(by_cell))
     return 1 if any(one.called_good and not one.seated for one in outcomes) else 0
 
 
-@cache
-def _cell(name: str) -> CycleCell:
-    return CycleCell.shipped(name)
-
-
 def _run(job: Job) -> CycleOutcome:
     name, seed = job
-    return run_cycle(_cell(name), seed)
+    return run_cycle(shipped_cell(name), seed)
 
 
-def as_record(cell: str, outcome: CycleOutcome) -> dict[str, object]:
-    """Plain data of one cycle."""
+def _written(job: Job, outcome: CycleOutcome) -> Mapping[str, Any]:
     return {
-        "cell": cell,
+        "cell": job[0],
         "seed": outcome.seed,
         "called_good": outcome.called_good,
         "seated": outcome.seated,
@@ -87,9 +64,27 @@ def as_record(cell: str, outcome: CycleOutcome) -> dict[str, object]:
     }
 
 
+def _read(record: Mapping[str, Any]) -> tuple[Job, CycleOutcome]:
+    figures = dict(record)
+    cell, forces, moments = (figures.pop(name) for name in ("cell", "force_n", "moment_nm"))
+    peaks = {
+        CyclePhase(phase): ForcePeaks(_by_window(forces[phase]), _by_window(moments[phase]))
+        for phase in forces
+    }
+    return (cell, int(record["seed"])), CycleOutcome(**figures, peaks=peaks)
+
+
+def _by_window(figures: Mapping[str, float]) -> dict[int, float]:
+    """JSON makes text of a window's number of milliseconds."""
+    return {int(window): figure for window, figure in figures.items()}
+
+
+LINE = Line(_written, _read)
+
+
 def table(by_cell: dict[str, list[CycleOutcome]]) -> Table:
     """One column for each cell; a rate has the bounds of Wilson, a force its limit."""
-    columns = {cell: _column(_cell(cell), outcomes) for cell, outcomes in by_cell.items()}
+    columns = {cell: _column(shipped_cell(cell), outcomes) for cell, outcomes in by_cell.items()}
     shown = Table("", *columns, title="Whole cycles, against the truth")
     for row in zip(*columns.values(), strict=True):
         shown.add_row(row[0][0], *(value for _, value in row))

@@ -1,13 +1,18 @@
-"""What the campaigns of traps and of faults share: options, two processes, lines of JSON."""
+"""What the campaigns of cycles, traps and faults share: options, processes, lines of JSON.
+
+A campaign that is given a file goes on where it was ended: each result is a line there as soon as
+it is known, and what has a line is not run again. A file belongs to one state of the code.
+"""
 
 import argparse
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from rich.progress import track
 
@@ -20,42 +25,77 @@ Job = TypeVar("Job")
 Result = TypeVar("Result")
 
 
+@dataclass(frozen=True, slots=True)
+class Line(Generic[Job, Result]):
+    """How a result is kept."""
+
+    written: Callable[[Job, Result], Mapping[str, Any]]
+    """As plain data, with what tells its job."""
+    read: Callable[[Mapping[str, Any]], tuple[Job, Result]]
+
+
 @cache
+def shipped_cell(name: str) -> CycleCell:
+    """Read once in each process."""
+    return CycleCell.shipped(name)
+
+
 def pin_cell() -> CycleCell:
-    """The shipped cell of the pin: read once in each process."""
-    return CycleCell.shipped("pin")
+    """The shipped cell of the pin."""
+    return shipped_cell("pin")
 
 
-def options(text: str | None, what: str, trials: int, quick_trials: int) -> argparse.Namespace:
-    """``trials`` of each case, ``seed`` of the first, and ``out``: where lines go, or None."""
+def parser_of(text: str | None, what: str, trials: int) -> argparse.ArgumentParser:
+    """With the options that all campaigns have."""
     parser = argparse.ArgumentParser(description=text)
     parser.add_argument("--quick", action="store_true", help=f"few {what}")
     parser.add_argument("-n", type=int, help=f"{what} of each case, default {trials}")
     parser.add_argument("--seed", type=int, default=1, help="seed of the first")
-    parser.add_argument("--out", type=Path, help="a file for one line of JSON each")
-    found = parser.parse_args()
-    found.trials = found.n or (quick_trials if found.quick else trials)
-    return found
+    parser.add_argument("--workers", type=int, default=WORKERS, help="processes")
+    parser.add_argument("--out", type=Path, help="a file for one line of JSON each, to go on with")
+    return parser
 
 
-def jobs_of(cases: Iterable[Case], found: argparse.Namespace) -> list[tuple[Case, int]]:
+def jobs_of(cases: Iterable[Case], seed: int, trials: int) -> list[tuple[Case, int]]:
     """One of each case after the other, so that a campaign that is ended early has some of all."""
     named = tuple(cases)
-    return [(case, found.seed + n) for n in range(found.trials) for case in named]
+    return [(case, seed + n) for n in range(trials) for case in named]
 
 
 def farmed(
     run: Callable[[Job], Result],
     jobs: Sequence[Job],
     what: str,
-    plain: Callable[[Job, Result], Mapping[str, Any]],
-    out: Path | None,
-) -> Iterator[Result]:
-    """The result of every job, in order; each is kept in ``out`` as soon as it is there."""
-    with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        found = track(pool.map(run, jobs), what, len(jobs))
-        for job, result in zip(jobs, found, strict=True):
+    line: Line[Job, Result],
+    found: argparse.Namespace,
+) -> list[Result]:
+    """The result of every job, in order; those with a line in ``out`` are taken from there."""
+    out: Path | None = found.out
+    done = {} if out is None else dict(kept(line, out))
+    left = [job for job in jobs if job not in done]
+    with ProcessPoolExecutor(found.workers, mp_context=get_context("spawn")) as pool:
+        results = track(pool.map(run, left), what, len(left))
+        for job, result in zip(left, results, strict=True):
+            done[job] = result
             if out is not None:
-                with out.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps(plain(job, result)) + "\n")
-            yield result
+                _keep(line.written(job, result), out)
+    return [done[job] for job in jobs]
+
+
+def kept(line: Line[Job, Result], out: Path) -> Iterator[tuple[Job, Result]]:
+    """What the lines of a file say; a file that is not there has none."""
+    text = out.read_text("utf-8") if out.exists() else ""
+    for one in text.splitlines():
+        try:
+            record = json.loads(one)
+        except json.JSONDecodeError:
+            # Half a line, of a campaign that was killed: that job is run again.
+            continue
+        yield line.read(record)
+
+
+def _keep(record: Mapping[str, Any], out: Path) -> None:
+    begun = out.read_bytes() if out.exists() else b""
+    with out.open("a", encoding="utf-8") as lines:
+        between = "" if not begun or begun.endswith(b"\n") else "\n"
+        lines.write(between + json.dumps(record) + "\n")

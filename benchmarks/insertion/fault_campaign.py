@@ -6,13 +6,14 @@ that does not stand at its seat.
 
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks.insertion.cycles import CycleOutcome, run_cycle
-from benchmarks.insertion.farmed import farmed, jobs_of, options, pin_cell
+from benchmarks.insertion.farmed import Line, farmed, jobs_of, parser_of, pin_cell
 from benchmarks.insertion.fault_cycles import EXPECTED, CycleFault, injected
 from benchmarks.insertion.wilson import wilson_bounds
 
@@ -23,9 +24,10 @@ Job = tuple[CycleFault, int]
 
 def main() -> int:
     """Exit code."""
-    found = options(__doc__, "cycles", TRIALS, QUICK_TRIALS)
-    jobs = jobs_of(CycleFault, found)
-    outcomes = list(farmed(_run, jobs, "cycles", _plain, found.out))
+    found = parser_of(__doc__, "cycles", TRIALS).parse_args()
+    trials = found.n or (QUICK_TRIALS if found.quick else TRIALS)
+    jobs = jobs_of(CycleFault, found.seed, trials)
+    outcomes = farmed(_run, jobs, "cycles", LINE, found)
     Console(width=140).print(table(jobs, outcomes))
     return 1 if any(one.called_good and not one.seated for one in outcomes) else 0
 
@@ -35,16 +37,25 @@ def _run(job: Job) -> CycleOutcome:
     return run_cycle(pin_cell(), seed, injected(pin_cell(), fault, seed))
 
 
-def _plain(job: Job, outcome: CycleOutcome) -> dict[str, object]:
+def _written(job: Job, outcome: CycleOutcome) -> Mapping[str, Any]:
     return {
         "injected": job[0].value,
         "seed": job[1],
         "called_good": outcome.called_good,
         "seated": outcome.seated,
         "fault": outcome.fault,
-        "height_mm": 1e3 * outcome.height_m,
+        "height_m": outcome.height_m,
         "cycle_s": outcome.cycle_s,
     }
+
+
+def _read(record: Mapping[str, Any]) -> tuple[Job, CycleOutcome]:
+    figures = dict(record)
+    job = CycleFault(figures.pop("injected")), int(record["seed"])
+    return job, CycleOutcome(**figures)
+
+
+LINE = Line(_written, _read)
 
 
 def table(jobs: Sequence[Job], outcomes: Sequence[CycleOutcome]) -> Table:

@@ -6,14 +6,15 @@ is not.
 """
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table
 
 from benchmarks.insertion.contact_traps import ContactTrap, TrapState, run_contact_trap
-from benchmarks.insertion.farmed import farmed, jobs_of, options, pin_cell
+from benchmarks.insertion.farmed import Line, farmed, jobs_of, parser_of, pin_cell
 from benchmarks.insertion.wilson import wilson_bounds
 
 TRIALS, QUICK_TRIALS = 125, 2
@@ -23,9 +24,9 @@ Job = tuple[TrapState, int]
 
 def main() -> int:
     """Exit code."""
-    found = options(__doc__, "traps", TRIALS, QUICK_TRIALS)
-    jobs = jobs_of(TrapState, found)
-    traps = list(farmed(_run, jobs, "traps", _plain, found.out))
+    found = parser_of(__doc__, "traps", TRIALS).parse_args()
+    trials = found.n or (QUICK_TRIALS if found.quick else TRIALS)
+    traps = farmed(_run, jobs_of(TrapState, found.seed, trials), "traps", LINE, found)
     Console(width=140).print(table(traps))
     return 1 if any(trap.inserted and not trap.seated for trap in traps) else 0
 
@@ -35,9 +36,17 @@ def _run(job: Job) -> ContactTrap:
     return run_contact_trap(pin_cell(), state, seed)
 
 
-def _plain(_: Job, trap: ContactTrap) -> dict[str, object]:
+def _written(_: Job, trap: ContactTrap) -> Mapping[str, Any]:
     """Without the curve, which is long."""
     return {name: value for name, value in asdict(trap).items() if name != "curve"}
+
+
+def _read(record: Mapping[str, Any]) -> tuple[Job, ContactTrap]:
+    state = TrapState(record["state"])
+    return (state, int(record["seed"])), ContactTrap(**{**record, "state": state, "curve": ""})
+
+
+LINE = Line(_written, _read)
 
 
 def table(traps: Sequence[ContactTrap]) -> Table:

@@ -181,7 +181,10 @@ class PegSlipped(PegNotInserted):
 
     number = 591
     text = "The part has slipped in the gripper, or nobody can tell"
-    cause = "A force above 60 % of the grip force, or a rear that is not where the drawing has it."
+    cause = (
+        "A force above 60 % of the grip force, a face that carried the part while the arm went on, "
+        "or a rear that is not where the drawing has it."
+    )
     remedy = "Take the part out by hand; check jaws and grip pressure; measure the grip force."
     leaves_hole = False
 

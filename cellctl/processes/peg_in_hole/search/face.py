@@ -4,7 +4,9 @@ Its height is never taken from vision: every depth of search, insertion and verd
 plane. Source: section 2 (S1b, S1c) of the study of insertion by touch.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import takewhile
 from math import radians
 
 import numpy as np
@@ -12,7 +14,12 @@ from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
 from cellctl.errors.streamed_contact import StreamLate
-from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
+from cellctl.processes.peg_in_hole.faults import (
+    FaceAbsent,
+    FaceTilted,
+    FaceUneven,
+    PegSlipped,
+)
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
@@ -20,6 +27,11 @@ Array = NDArray[np.float64]
 
 _OVER_PLANE_M = 0.4e-3
 _BEYOND_M = 2e-3
+_SLIP_M, _WAY_RATIO = 0.5e-3, 2.0
+"""A touch that goes on in contact for so long, and for so many times the way in which the arm's
+stiffness makes the force of a touch, makes the part slip."""
+_FELT_N, _FELT_SIGMAS = 1.0, 5.0
+"""Of the axial force, that a touch in the air does not show."""
 _MOST_RESIDUAL_M = 0.1e-3
 _MOST_TILT_RAD = radians(3)
 _FREE_M_S = 20e-3
@@ -72,8 +84,8 @@ class FacePlan:
 async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) -> TouchedFace:
     """Touch on a circle round the search centre; the first point fast, since its height is unknown.
 
-    Raises ``FaceAbsent``, ``FaceUneven`` and ``FaceTilted``, and ``StreamLate`` when a touch takes
-    far longer than it should.
+    Raises ``FaceAbsent``, ``FaceUneven``, ``FaceTilted`` and ``PegSlipped``, and ``StreamLate``
+    when a touch takes far longer than it should.
     """
     radius_m, height_uncertainty_m = plan.radius_m, plan.height_uncertainty_m
     touching = _Touching(motions, task, plan.datum_depth_m, height_uncertainty_m)
@@ -148,17 +160,38 @@ class _Touching:
         """The tip in contact at a place (2,), over which it stands."""
         touched = await self.motions.touch(_DOWN, travel_m, self.task.limits.search_n, speed_m_s)
         x_mm, y_mm = place_m * 1e3
+        place = f"x {x_mm:.1f}, y {y_mm:.1f} mm"
         if touched.ended is Ended.TIME:
             # Late ticks let the arm stand: it has not gone far enough to say that nothing is there.
             raise StreamLate(
-                f"the touch at x {x_mm:.1f}, y {y_mm:.1f} mm did not go its {travel_m * 1e3:.1f} "
-                "mm in three times the time that they take"
+                f"the touch at {place} did not go its {travel_m * 1e3:.1f} mm in three times the "
+                "time that they take"
             )
         if touched.ended is not Ended.FORCE:
-            raise FaceAbsent(
-                f"no contact at x {x_mm:.1f}, y {y_mm:.1f} mm within {travel_m * 1e3:.1f} mm"
-            )
+            _require_no_slip(touched.samples, self.task, self.task.limits.search_n, place)
+            raise FaceAbsent(f"no contact at {place} within {travel_m * 1e3:.1f} mm")
         return touched.last
+
+
+def _require_no_slip(
+    samples: Sequence[ContactSample], task: SearchTask, force_n: float, place: str
+) -> None:
+    """Raise ``PegSlipped`` for a touch that met something and went on without ``force_n``.
+
+    An arm that presses on what stays where it is meets more force with all of its way. One that
+    does not pushes the part into the fingers, with just the force of the grip.
+    """
+    least_n = max(_FELT_N, _FELT_SIGMAS * samples[-1].force_sigma_n)
+    pushed = list(takewhile(lambda one: -one.force_n[2] >= least_n, reversed(samples)))
+    if not pushed:
+        return
+    way_m = _depth_m(pushed[0]) - _depth_m(pushed[-1])
+    if way_m < max(_SLIP_M, _WAY_RATIO * force_n / task.cell.stiffness_n_m):
+        return
+    carried_n = float(np.mean([-one.force_n[2] for one in pushed]))
+    raise PegSlipped(
+        f"the face carries {carried_n:.1f} N at {place}, and no more over {way_m * 1e3:.1f} mm"
+    )
 
 
 def _checked(places: Array, depths: Array, task: SearchTask, radius_m: float) -> TouchedFace:

@@ -7,7 +7,7 @@ import pytest
 from rich.console import Console
 
 from benchmarks.insertion.contact_world import ContactWorld, Imperfections
-from benchmarks.insertion.cycle_campaign import as_record, table
+from benchmarks.insertion.cycle_campaign import table
 from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
 from cellctl.guard.report import TripReason
@@ -106,4 +106,3 @@ def test_the_table_tells_what_is_called_inserted_and_is_not() -> None:
     assert "7.0 of 12" in said
     (false,) = [line for line in said.splitlines() if "are not" in line]
     assert "1" in false
-    assert as_record("pin", outcomes[0])["force_n"] == {"search": {1: 9.0, 3: 8.0, 20: 7.0}}

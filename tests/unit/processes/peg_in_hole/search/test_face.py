@@ -1,4 +1,5 @@
 import asyncio
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -6,7 +7,12 @@ from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotion, Ended
 from cellctl.errors.streamed_contact import StreamLate
-from cellctl.processes.peg_in_hole.faults import FaceAbsent, FaceTilted, FaceUneven
+from cellctl.processes.peg_in_hole.faults import (
+    FaceAbsent,
+    FaceTilted,
+    FaceUneven,
+    PegSlipped,
+)
 from cellctl.processes.peg_in_hole.search.face import FacePlan, TouchedFace, touch_face
 from tests.rigs.insertion.kinematic import KinematicMotions
 from tests.rigs.insertion.surface import Truth
@@ -65,6 +71,63 @@ def test_a_touch_that_late_ticks_have_kept_from_its_way_says_nothing_of_the_face
 def test_no_face_is_a_fault() -> None:
     motions = NothingThere(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
     with pytest.raises(FaceAbsent, match=r"no contact at x 8\.0, y 0\.0 mm"):
+        touched(motions)
+
+
+class GivesWay(KinematicMotions):
+    """A touch that goes all of its way, with these axial forces at its last tenths of a way."""
+
+    felt_n: tuple[float, ...] = ()
+
+    async def touch(
+        self,
+        direction: NDArray[np.float64],
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+    ) -> ContactMotion:
+        felt = await super().touch(direction, travel_m, force_n, speed_m_s)
+        down_m = np.array([0.0, 0.0, 1e-4])
+        samples = [
+            replace(
+                felt.last,
+                task_position_tip_m=felt.last.task_position_tip_m + number * down_m,
+                force_n=np.array([0.0, 0.0, -axial_n]),
+            )
+            for number, axial_n in enumerate(self.felt_n)
+        ]
+        return ContactMotion(Ended.TRAVEL, tuple(samples))
+
+
+def test_a_part_that_is_pushed_into_the_fingers_has_slipped() -> None:
+    """The force stays at that of the grip while the arm goes on: there is a face."""
+    motions = GivesWay(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
+    motions.felt_n = (0.0, 0.1, 2.0, *[4.1, 3.9] * 6)
+    with pytest.raises(PegSlipped, match=r"3\.\d N at x 8\.0, y 0\.0 mm, .* over 1\.2 mm"):
+        touched(motions)
+
+
+def test_an_arm_that_is_so_soft_may_have_met_the_face() -> None:
+    """With 2 N/mm a face makes 8 N after 4 mm: nobody can tell it from fingers after one."""
+    motions = GivesWay(pin(stiffness_n_m=2e3), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
+    motions.felt_n = (0.0, 0.1, *[2.1] * 12)
+    with pytest.raises(FaceAbsent):
+        touched(motions)
+
+
+@pytest.mark.parametrize(
+    "felt_n",
+    [
+        (0.4, -0.4) * 8,
+        (0.0,) * 14 + (4.0, 4.0),
+        (0.0, 4.0, 4.0, 4.0, 4.0, 4.0) + (0.0,) * 8,
+    ],
+    ids=["noise", "met at its end", "passed by"],
+)
+def test_a_face_that_was_not_met_is_no_slip(felt_n: tuple[float, ...]) -> None:
+    motions = GivesWay(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
+    motions.felt_n = felt_n
+    with pytest.raises(FaceAbsent):
         touched(motions)
 
 

@@ -1,0 +1,70 @@
+"""A campaign goes on where it was ended, and its lines say what was found."""
+
+import json
+from argparse import Namespace
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from benchmarks.insertion import cycle_campaign, fault_campaign, trap_campaign
+from benchmarks.insertion.contact_traps import ContactTrap, TrapState
+from benchmarks.insertion.cycles import CycleOutcome
+from benchmarks.insertion.farmed import Line, farmed, jobs_of, kept
+from benchmarks.insertion.fault_cycles import CycleFault
+from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
+from fakes.scenes.socket.peaks import ForcePeaks
+
+Job = tuple[str, int]
+
+
+def doubled(job: Job) -> int:
+    """A result, for another process to find."""
+    return 2 * job[1]
+
+
+NUMBERS: Line[Job, int] = Line(
+    lambda job, result: {"case": job[0], "seed": job[1], "result": result},
+    lambda record: ((record["case"], record["seed"]), record["result"]),
+)
+
+
+def test_what_has_a_line_is_not_run_again(tmp_path: Path) -> None:
+    out = tmp_path / "lines.json"
+    out.write_text('{"case": "b", "seed": 3, "result": -1}\n{"case": "a", "se', "utf-8")
+    jobs = jobs_of("ab", 3, 2)
+    assert jobs == [("a", 3), ("b", 3), ("a", 4), ("b", 4)]
+    found = Namespace(out=out, workers=1)
+    assert farmed(doubled, jobs, "numbers", NUMBERS, found) == [6, -1, 8, 8]
+    assert dict(kept(NUMBERS, out)) == {("b", 3): -1, ("a", 3): 6, ("a", 4): 8, ("b", 4): 8}
+    assert farmed(doubled, jobs, "numbers", NUMBERS, found) == [6, -1, 8, 8]
+    assert len(out.read_text("utf-8").splitlines()) == 5
+
+
+PEAKS = {CyclePhase.SEARCH: ForcePeaks({1: 9.0, 3: 8.0, 20: 7.0}, {1: 0.1, 3: 0.1, 20: 0.1})}
+CYCLE = CycleOutcome(7, called_good=True, seated=True, search_s=10.0, cycle_s=40.0, peaks=PEAKS)
+FAULTY = CycleOutcome(7, fault="F591", height_m=1e-3, cycle_s=40.0)
+TRAP = ContactTrap(TrapState.ON_FACE, 7, False, "F592", False, "not inserted", "")
+
+
+@pytest.mark.parametrize(
+    ("line", "job", "result", "figures"),
+    [
+        (cycle_campaign.LINE, ("pin", 7), CYCLE, lambda one: one.peaks[CyclePhase.SEARCH].force_n),
+        (cycle_campaign.LINE, ("pin", 7), CYCLE, lambda one: (one.called_good, one.cycle_s)),
+        (
+            fault_campaign.LINE,
+            (CycleFault.PEG_SLIP, 7),
+            FAULTY,
+            lambda one: (one.fault, one.height_m),
+        ),
+        (trap_campaign.LINE, (TrapState.ON_FACE, 7), TRAP, lambda one: one),
+    ],
+)
+def test_a_line_is_read_as_it_was_written(
+    line: Line[Any, Any], job: Any, result: Any, figures: Callable[[Any], Any]
+) -> None:
+    again, read = line.read(json.loads(json.dumps(line.written(job, result))))
+    assert again == job
+    assert figures(read) == figures(result)
