@@ -7,6 +7,13 @@ import numpy as np
 from fakes.world.frames import Array
 
 WINDOWS_MS = (1, 3, 20)
+_PLACES = {
+    window: [
+        np.arange(tick - window + 1, tick + 1) % max(WINDOWS_MS) for tick in range(max(WINDOWS_MS))
+    ]
+    for window in WINDOWS_MS
+}
+"""Of the samples of a window in a ring of the longest one, by where the newest stands."""
 
 
 @dataclass(slots=True, eq=False)
@@ -30,8 +37,7 @@ class ForcePeaks:
         self._tick += 1
         self._last[self._tick % longest] = wrench
         for window in WINDOWS_MS:
-            places = np.arange(self._tick - window + 1, self._tick + 1) % longest
-            mean = self._last[places].sum(axis=0) / window
+            mean = self._last[_PLACES[window][self._tick % longest]].sum(axis=0) / window
             force, moment = mean[:3], mean[3:]
             self.force_n[window] = max(self.force_n[window], float(np.sqrt(force @ force)))
             self.moment_nm[window] = max(self.moment_nm[window], float(np.sqrt(moment @ moment)))

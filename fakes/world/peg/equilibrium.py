@@ -118,28 +118,30 @@ class _Load:
     def __init__(
         self, fit: Fit, contacts: list[Contact], pose: Pose6, before: Pose6, bristles: Bristles
     ) -> None:
-        self._left: list[Row] = []
-        self._right: list[tuple[float, Row]] = []
+        # One number after the other: numpy takes several times as long for rows within a list.
+        self._left: list[float] = []
+        self._right_sizes: list[float] = []
+        self._right: list[float] = []
+        self._sizes: list[float] = []
+        self._rows: list[float] = []
         self._bristles: Bristles = {}
         self._contacts, self._before = contacts, before
-        self._forces: list[tuple[float, Row]] = []
         moved = _difference(pose, before)
         for contact in contacts:
             self._add(contact, moved, bristles, fit.friction)
         if among_contacts(fit, pose):
             self._add_inside(fit, pose[2], moved[2], bristles)
         self.wrench = np.zeros(6)
-        if self._forces:
-            sizes = np.array([size for size, _ in self._forces])
-            self.wrench = sizes @ np.array([row for _, row in self._forces])
+        if self._sizes:
+            self.wrench = np.array(self._sizes) @ np.array(self._rows).reshape(-1, 6)
 
     def jacobian(self) -> Array:
         """Minus the derivative of the wrench against the pose, shape (6, 6)."""
         if not self._left:
             return np.zeros((6, 6))
-        sizes = np.array([size for size, _ in self._right])
-        rows = np.array([row for _, row in self._right])
-        return np.asarray(np.array(self._left).T @ (sizes[:, None] * rows))
+        left = np.array(self._left).reshape(-1, 6)
+        right = np.array(self._right).reshape(-1, 6)
+        return np.asarray(left.T @ (np.array(self._right_sizes)[:, None] * right))
 
     def standing(self, pose: Pose6, *, crept: int = 0) -> Equilibrium:
         slots = tuple(contact.slot for contact in self._contacts)
@@ -147,18 +149,23 @@ class _Load:
         return Equilibrium(pose, self.wrench, self._bristles, slots, way, crept)
 
     def _derivative(self, left: Row, size: float, right: Row) -> None:
-        self._left.append(left)
-        self._right.append((size, right))
+        self._left += left
+        self._right_sizes.append(size)
+        self._right += right
+
+    def _force(self, size: float, row: Row) -> None:
+        self._sizes.append(size)
+        self._rows += row
 
     def _add(self, contact: Contact, moved: Pose6, bristles: Bristles, friction: float) -> None:
         normal_n = contact.stiffness_n_m * contact.depth_m
         if contact.twist:
             row = (0.0, 0.0, 0.0, 0.0, 0.0, contact.nz)
-            self._forces.append((normal_n, row))
+            self._force(normal_n, row)
             self._derivative(row, contact.stiffness_n_m, row)
             return
         pressed = _row(contact, contact.nx, contact.ny, contact.nz)
-        self._forces.append((normal_n, pressed))
+        self._force(normal_n, pressed)
         self._derivative(pressed, contact.stiffness_n_m, pressed)
         if contact.around_m > 0.0:
             self._turning_normal(contact, normal_n)
@@ -167,7 +174,7 @@ class _Load:
         rubbed = rub(contact, bristles, moved, friction)
         self._bristles[contact.slot] = rubbed.deflection
         along, across = _row(contact, *rubbed.along), _row(contact, *rubbed.across)
-        self._forces.append((-rubbed.force_n, along))
+        self._force(-rubbed.force_n, along)
         stiffness = rubbed.force_n / rubbed.trial_m if rubbed.trial_m > 1e-15 else 0.0
         if rubbed.slips:
             self._derivative(along, -friction * contact.stiffness_n_m, pressed)
@@ -195,7 +202,7 @@ class _Load:
         kept = max(-_SPRING_GIVES_M, min(_SPRING_GIVES_M, trial))
         self._bristles[_INSIDE] = (0.0, 0.0, kept)
         axial = (0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
-        self._forces.append((-limit_n * kept / _SPRING_GIVES_M, axial))
+        self._force(-limit_n * kept / _SPRING_GIVES_M, axial)
         if kept == trial:
             self._derivative(axial, limit_n / _SPRING_GIVES_M, axial)
 

@@ -141,6 +141,9 @@ class Slots:
         x, y, z = tip
         rings = self._rings if self._peg_chamfer > 0 and self._enters else self._rings[:1]
         for number, radius, up in rings:
+            # No point of the ring is farther out than this.
+            if math.hypot(x + up * s[0], y + up * s[1]) + radius <= self._bore:
+                continue
             px, py, pz, rho = cone_point(tip, s, radius, up)
             depth = (rho - self._mouth - pz) * _HALF
             below = self._mouth - TO_CHAMFER * pz

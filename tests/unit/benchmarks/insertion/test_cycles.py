@@ -55,6 +55,16 @@ def test_the_guard_feels_what_the_face_does_to_the_peg(cell: CycleCell) -> None:
     assert not world.seated
 
 
+def test_a_wrench_about_another_point_has_the_moment_of_its_lever(cell: CycleCell) -> None:
+    world = lowered(cell, EXACT, 2.0)
+    turn, tip = world._hole[:3, :3], np.array(world.peg.pose[:3])
+    for wrench in np.random.default_rng(2).normal(0.0, 5.0, (50, 6)):
+        point = world.flange[:3, 3] + wrench[:3]
+        force = turn @ wrench[:3]
+        moment = turn @ wrench[3:] + np.cross(turn @ tip + world._hole[:3, 3] - point, force)
+        assert world.about(point, wrench).tolist() == [*force, *moment]
+
+
 def test_the_guard_trips_at_the_limits_that_it_was_given(cell: CycleCell) -> None:
     world = lowered(cell, EXACT, 2.0)
     limits = guard_limits((5.0, 5.0, 5.0, 1.0, 1.0, 1.0), Sensing(1000.0, 0.01, 0.1))
