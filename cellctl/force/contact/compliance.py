@@ -39,6 +39,12 @@ class LateralOffset:
         """The sum; yaw angles are so small that their order does not matter."""
         return LateralOffset(self.x_m + step.x_m, self.y_m + step.y_m, self.yaw_rad + step.yaw_rad)
 
+    def to(self, target: "LateralOffset") -> "LateralOffset":
+        """The step that leads there."""
+        return LateralOffset(
+            target.x_m - self.x_m, target.y_m - self.y_m, target.yaw_rad - self.yaw_rad
+        )
+
 
 NO_OFFSET = LateralOffset()
 

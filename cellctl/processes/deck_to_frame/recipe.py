@@ -50,6 +50,22 @@ class PoseCorrection(Section):
         return _about_axes(self.threshold_deg, about_x_deg, about_z_deg)
 
 
+class PinSearch(Section):
+    """Pins that stand on the deck beside their holes are looked for at places round the measured
+    one."""
+
+    radius_mm: Annotated[float, Field(gt=0, le=1)]
+    """Within this of the measured place."""
+    catch_mm: Annotated[float, Field(ge=0.02, le=1)]
+    """A pin so far beside its hole still enters: clearance and both chamfers."""
+
+    @model_validator(mode="after")
+    def _few_places(self) -> Self:
+        if self.radius_mm > 3 * self.catch_mm:
+            raise ValueError("radius_mm is more than three times catch_mm: too many places")
+        return self
+
+
 class Pins(Section):
     """Pins that enter the deck's holes before it sits (our extension of the paper)."""
 
@@ -64,6 +80,18 @@ class Pins(Section):
     """Upper bound of what is felt across the approach, the robot's own is a safe choice; None:
     ``stiffness_n_per_mm`` of the mating."""
     yaw_stiffness_n_m_per_deg: Annotated[float, Field(ge=10, le=200_000)] = 5300.0
+    search: PinSearch | None = None
+    """None: pins that stand on the deck are a fault."""
+
+    @model_validator(mode="after")
+    def _search_gives_way(self) -> Self:
+        if self.search is None:
+            return self
+        if not self.compliance:
+            raise ValueError("search needs compliance: the pins that it finds push sideways")
+        if self.search.radius_mm > self.max_travel_mm:
+            raise ValueError("search.radius_mm is beyond max_travel_mm")
+        return self
 
 
 class Mating(Section):

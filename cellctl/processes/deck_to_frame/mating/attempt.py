@@ -51,6 +51,8 @@ class Attempt:
     gave_way: list[GivingWay] = field(default_factory=list)
     touches_above: int = 0
     """Touches above the window that giving way has ended."""
+    places_tried: int = 0
+    """Of a search for the holes of pins."""
 
     def pose_at(self, travel_m: float) -> RigidTransform:
         """Flange after so much travel along −Z_D, beside it where the deck gave way."""

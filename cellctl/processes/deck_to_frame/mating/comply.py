@@ -7,6 +7,7 @@ from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.faults import ContactEarly
 from cellctl.processes.deck_to_frame.mating.attempt import Attempt, loop_time_s
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits, fault_of, touch_limits
+from cellctl.processes.deck_to_frame.mating.pin_search import try_next_place
 from cellctl.processes.deck_to_frame.mating.result import GivingWay, MatingPhase, Reading
 
 GLANCE_S = 0.15
@@ -58,8 +59,9 @@ async def resolve_early_contact(attempt: Attempt) -> float:
     """Called after a touch above the seat that was taken over: give way and go on; returns the
     travel that is reached (m).
 
-    Raises ``ContactEarly`` when the force along the approach stays: that is no pin. Touches that
-    never end are one too.
+    Where the force along the approach stays, the deck stands on a pin or on something else: it is
+    put over the next place of the recipe's search. Raises ``ContactEarly`` when there is none left.
+    Touches that never end are one too.
     """
     settings, window = attempt.plan.settings, attempt.plan.window
     reading = await attempt.read(settings.reading_s, settings.step_settle_s)
@@ -68,12 +70,17 @@ async def resolve_early_contact(attempt: Attempt) -> float:
     # Below the drift of the detector the next move can begin as if in free air (docs/mating.md,
     # "What if the stop is not obeyed").
     stays = reading.force_n > settings.touch.drift_n
-    if stays or attempt.touches_above > settings.max_creep_steps:
+    many = attempt.touches_above > settings.max_creep_steps
+    reached_m = reading.travel_m
+    if stays and not many:
+        lifted_m = await try_next_place(attempt, reading)
+        stays, reached_m = lifted_m is None, reached_m if lifted_m is None else lifted_m
+    if stays or many:
         raise ContactEarly(
             f"contact after {reading.travel_m / MM:.3f} mm, expected at "
             f"{window.expected_m / MM:.3f} mm; giving way by "
             f"{attempt.offset.distance_m / MM:.3f} mm leaves {reading.force_n:.1f} N "
-            f"({attempt.touches_above} touches)"
+            f"({attempt.touches_above} touches, {attempt.places_tried} other places)"
         )
     await attempt.guard.arm(touch_limits(settings))
-    return reading.travel_m
+    return reached_m

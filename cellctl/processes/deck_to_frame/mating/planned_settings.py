@@ -60,7 +60,14 @@ def mating_settings(
 
 def _pin_settings(mating: Mating, pins: Pins) -> PinSettings:
     lateral_n_per_mm = pins.lateral_stiffness_n_per_mm or mating.stiffness_n_per_mm
+    searched = {}
+    if pins.search is not None:
+        searched = {
+            "search_radius_m": pins.search.radius_mm * MM,
+            "catch_m": pins.search.catch_mm * MM,
+        }
     return PinSettings(
+        **searched,
         engagement_m=pins.engagement_mm * MM,
         compliant=pins.compliance,
         greatest_travel_m=pins.max_travel_mm * MM,

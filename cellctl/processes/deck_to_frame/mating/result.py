@@ -19,6 +19,7 @@ class MatingPhase(Enum):
     SLOW = "guarded travel"
     CREEP = "creep to force"
     GIVE_WAY = "give way to pins"
+    SEARCH = "look for the holes of pins"
     HOLD = "hold"
     RELEASE = "relax"
     BACK_OFF = "back off"
@@ -64,6 +65,8 @@ class GivingWay:
     move: LateralOffset
     total: LateralOffset
     """Displacement from the stand-off after the move."""
+    searched: bool = False
+    """Not by what was felt, but to the next place of a search."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -28,6 +28,10 @@ class PinSettings:
     dead_band_n_m: float = 1.5
     greatest_step_m: float = 5e-5
     greatest_step_rad: float = float(np.deg2rad(0.005))
+    search_radius_m: float = 0.0
+    """Places so far round the stand-off are tried for pins that stand on the deck; 0: none is."""
+    catch_m: float = 1e-4
+    """A pin so far beside its hole still enters."""
 
 
 @dataclass(frozen=True, slots=True)

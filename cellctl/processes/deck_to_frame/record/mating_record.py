@@ -103,6 +103,7 @@ def _compliance_record(result: MatingResult) -> dict[str, Any]:
                     "x_mm": each.move.x_m / MM,
                     "y_mm": each.move.y_m / MM,
                     "yaw_deg": float(np.degrees(each.move.yaw_rad)),
+                    **({"searched": True} if each.searched else {}),
                 }
                 for each in result.gave_way
             ],

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactMotions, ContactSample, Ended
+from cellctl.force.contact.spirals import expanding_turns
 from cellctl.processes.peg_in_hole.faults import SearchGaveUp
 from cellctl.processes.peg_in_hole.first_contact.classify import ContactClass, class_by_force
 from cellctl.processes.peg_in_hole.plan.parameters import STANDS_M, SearchParameters
@@ -21,7 +22,6 @@ from cellctl.processes.peg_in_hole.search.conditions import (
     held,
 )
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
-from cellctl.processes.peg_in_hole.search.spirals import expanding_turns
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
+from cellctl.force.contact.spirals import spiral_points
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S
 from cellctl.processes.peg_in_hole.search.conditions import Stop
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
-from cellctl.processes.peg_in_hole.search.spirals import spiral_points
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 from cellctl.processes.peg_in_hole.search.tilted_touch import leaning
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from pydantic import ValidationError
 
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.calibration import HeadPoseChanged
@@ -17,7 +18,7 @@ from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
-from cellctl.processes.deck_to_frame.recipe import Pins
+from cellctl.processes.deck_to_frame.recipe import Pins, PinSearch
 from cellctl.processes.deck_to_frame.run_facts import read_facts
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from tests.unit.processes.deck_to_frame.rig import RunRig
@@ -61,6 +62,28 @@ def test_pins_of_the_recipe_end_the_fast_travel_above_them(rig: RunRig) -> None:
     assert settings.greatest_yaw_rad == pytest.approx(np.radians(0.02))
     assert settings.lateral_stiffness_n_m == pytest.approx(1e6)
     assert settings.yaw_stiffness_n_m_rad == pytest.approx(3e5, rel=0.02)
+
+
+def test_a_search_for_pins_is_the_recipe_s(rig: RunRig) -> None:
+    pins = Pins(engagement_mm=3.0, search=PinSearch(radius_mm=0.2, catch_mm=0.1))
+    mating = rig.bench.recipe.mating.model_copy(update={"pins": pins})
+    settings = settings_of(rig, mating=mating).pins
+    assert settings is not None
+    assert settings.search_radius_m == pytest.approx(2e-4)
+    assert settings.catch_m == pytest.approx(1e-4)
+
+
+@pytest.mark.parametrize(
+    ("pins", "why"),
+    [
+        ({"search": {"radius_mm": 0.2, "catch_mm": 0.05}}, "too many places"),
+        ({"search": {"radius_mm": 0.3, "catch_mm": 0.1}}, "beyond max_travel_mm"),
+        ({"search": {"radius_mm": 0.1, "catch_mm": 0.1}, "compliance": False}, "needs compliance"),
+    ],
+)
+def test_a_search_that_cannot_be_made_is_refused(pins: dict[str, Any], why: str) -> None:
+    with pytest.raises(ValidationError, match=why):
+        Pins.model_validate({"engagement_mm": 3.0, **pins})
 
 
 def test_spreads_of_part_and_arm_are_the_recipe_s(rig: RunRig) -> None:

@@ -1,9 +1,12 @@
 """A mating onto pins that stand beside their place: rigid, giving way, and at the bound."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from cellctl.geometry.pose import MM
+from cellctl.processes.deck_to_frame.mating.pin_search import places
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress
 from cellctl.processes.deck_to_frame.mating.settings import PinSettings
 from tests.rigs.mating.trial import PINS, Hook, Trial, run_trial
@@ -35,6 +38,49 @@ def test_giving_way_seats_where_a_rigid_deck_is_caught() -> None:
     told = [progress for progress in phases if progress.phase is MatingPhase.GIVE_WAY]
     assert len(told) >= 2
     assert all(progress.travel_m < 0.0102 for progress in told)
+
+
+def stood_on(pins: PinSettings, hook: Hook | None = None) -> Trial:
+    """The deck comes farther beside its pins than their chamfers reach: they stand on its face."""
+    left = np.array([(PINS.clearance_mm + PINS.chamfer_mm + 0.1) * MM, 0.0, 0.0, 0.0, 0.0, 0.0])
+    trial = Trial("pins", 11, stiffness_n_m=1e6, stop_latency_ms=20.0)
+    special = {"pins": PINS, "left": left}
+    return run_trial(trial, hook, special=special, pins=pins, stiffness_n_m=5.5e5)
+
+
+WIDE = PinSettings(ENGAGED_M, greatest_travel_m=1.0 * MM)
+SEARCHED = replace(WIDE, search_radius_m=1.0 * MM, catch_m=0.5 * MM)
+
+
+@pytest.mark.long
+def test_pins_that_stand_on_the_deck_are_a_fault_without_a_search_and_found_with_one() -> None:
+    without = stood_on(WIDE)
+    assert without.outcome == "F522"
+    assert "1 touches, 0 other places" in without.text
+    told: list[MatingProgress] = []
+    found = stood_on(SEARCHED, lambda _, progress: told.append(progress))
+    assert found.outcome == "seated", found.text
+    assert not found.false_complete
+    assert found.true_peak_n < 50.0
+    assert found.peak_lateral_n < 25.0
+    places_tried = sum(progress.phase is MatingPhase.SEARCH for progress in told)
+    assert 1 <= places_tried <= len(places(SEARCHED))
+
+
+def test_the_places_of_a_search_leave_no_gap_and_stay_within_its_radius() -> None:
+    pins = PinSettings(ENGAGED_M, search_radius_m=0.15 * MM, catch_m=0.05 * MM)
+    tried = np.array([(0.0, 0.0), *places(pins)])
+    assert len(tried) <= 40, "no more than an attempt has touches"
+    assert np.hypot(*tried.T).max() <= pins.search_radius_m
+    rng = np.random.default_rng(1)
+    radius, angle = np.sqrt(rng.uniform(0, 1, 4000)), rng.uniform(0, 2 * np.pi, 4000)
+    holes = 0.9 * pins.search_radius_m * radius * np.array([np.cos(angle), np.sin(angle)])
+    nearest = np.hypot(*(holes[:, None, :] - tried.T[:, :, None])).min(axis=0)
+    assert nearest.max() <= 1.1 * pins.catch_m
+
+
+def test_no_search_has_no_places() -> None:
+    assert places(PinSettings(ENGAGED_M)) == ()
 
 
 @pytest.mark.long

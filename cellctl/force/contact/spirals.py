@@ -1,4 +1,4 @@
-"""Ways of a search in the plane of the face."""
+"""Ways of a search in the plane of a face: for the hole of a peg, and for the holes of pins."""
 
 from collections.abc import Iterator
 
