@@ -82,8 +82,10 @@ class ContactLoop:
         """The ticks from now on belong to another motion."""
         self._motion, self._kind = self._motion + 1, kind
 
-    async def send(self, tip: Array) -> ContactSample:
+    async def send(self, tip: Array, at_bound: int = 0) -> ContactSample:
         """Send six numbers of the tip and wait for the tick; raises what ends the contact.
+
+        ``at_bound``: how many axes have given way as far as they may, for the record.
 
         That is the fault of a guard that has tripped, ``StreamLate``, or what the stream raises.
         """
@@ -114,6 +116,7 @@ class ContactLoop:
                 report.late,
                 self._motion,
                 self._kind,
+                at_bound,
             )
         )
         return self.sample

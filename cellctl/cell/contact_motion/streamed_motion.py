@@ -55,7 +55,7 @@ class StreamedMotion:
         samples: list[ContactSample] = []
         begun_s = self.loop.sample.time_s
         while True:
-            sample = await self.loop.send(self._next())
+            sample = await self.loop.send(self._next(), self._at_bound())
             samples.append(sample)
             ended = self.end(sample)
             if ended is None and sample.time_s - begun_s > self.limit_s:
@@ -64,7 +64,7 @@ class StreamedMotion:
                 break
             self._check(sample)
         while not self._stands():
-            samples.append(await self.loop.send(self._pose(Pace.BRAKE)))
+            samples.append(await self.loop.send(self._pose(Pace.BRAKE), self._at_bound()))
         return ContactMotion(ended, tuple(samples))
 
     def _next(self) -> Array:
@@ -92,6 +92,9 @@ class StreamedMotion:
             return press.admittance.brake()
         return press.admittance.step(press.ramp.step(), self.loop.felt)
 
+    def _at_bound(self) -> int:
+        return 0 if self.press is None else int(self.press.admittance.at_bound.sum())
+
     def _stands(self) -> bool:
         moving = abs(self.path.speed)
         if self.press is not None:
@@ -102,7 +105,7 @@ class StreamedMotion:
         if self.press is None:
             return
         admittance = self.press.admittance
-        held = int(admittance.at_bound.sum()) >= 2
+        held = self._at_bound() >= 2
         self._saturated = self._saturated + 1 if held else 0
         if self._saturated * self.loop.period_s > _SATURATED_S:
             given = ", ".join(f"{value:.4f}" for value in admittance.displacement)

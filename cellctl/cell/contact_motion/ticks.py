@@ -41,6 +41,8 @@ class ContactTick:
     motion: int
     """Counts the motions of the stream from 1 on; the ticks of one motion have the same number."""
     kind: MotionKind
+    at_bound: int = 0
+    """Axes that had given way as far as they may."""
 
 
 class TickObserver(ABC):

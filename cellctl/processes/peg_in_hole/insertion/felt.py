@@ -11,7 +11,7 @@ import numpy as np
 
 from cellctl.cell.contact_motion.motions import ContactSample
 
-_OUT_OF_BAND_N, _OUT_OF_BAND_NM = 3.0, 0.1
+OUT_OF_BAND_N, OUT_OF_BAND_NM = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""
 _STAYS = 0.7
 _FOOT = 0.2
@@ -43,7 +43,7 @@ class Standing:
     @property
     def sideways(self) -> bool:
         """Side force or moment out of their band: a jam or a wedge, not a closed hole."""
-        return self.side_n > _OUT_OF_BAND_N or self.moment_nm > _OUT_OF_BAND_NM
+        return self.side_n > OUT_OF_BAND_N or self.moment_nm > OUT_OF_BAND_NM
 
     def wedged_after(self, before: "Standing") -> bool:
         """The feed was lowered since, and side force and moment have stayed: the peg is wedged."""

@@ -4,10 +4,23 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cellctl.geometry.pose import Array
-from cellctl.plot_style import ACCENT, GOOD, LIMIT, MUTED, SECOND, envelope, line, style, to_svg
+from cellctl.plot_style import (
+    ACCENT,
+    GOOD,
+    GOOD_FILL,
+    LIMIT,
+    MUTED,
+    SECOND,
+    envelope,
+    line,
+    style,
+    to_svg,
+)
+from cellctl.processes.peg_in_hole.insertion.felt import OUT_OF_BAND_N, OUT_OF_BAND_NM
 
 _POINTS = {
     "face": (MUTED, "."),
@@ -17,6 +30,8 @@ _POINTS = {
     "entry": (GOOD, "*"),
 }
 """Colour and marker by what was felt."""
+_MOST_JAM = 2.0
+"""Drawn at the rim of the picture where it is more."""
 
 
 def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
@@ -58,26 +73,46 @@ def search_picture(trace: Mapping[str, Any], belief: Mapping[str, Any]) -> str:
         return to_svg(figure)
 
 
-def insertion_picture(ticks: Mapping[str, Array], limit_n: float | None = None) -> str:
-    """Force along the axis and across it, and moment, over depth below the face. SVG.
+def insertion_picture(
+    ticks: Mapping[str, Array], limit_n: float | None = None, jam: Array | None = None
+) -> str:
+    """Force along the axis and across it, moment, and nearness of a jam, over depth. SVG.
 
-    ``limit_n``: of the insertion; None where the record does not say.
+    ``limit_n``: of the insertion; None where the record does not say. ``jam`` (n,): ratio of each
+    tick, 1 on the border, NaN where it cannot be told.
     """
     with style():
-        figure = Figure(figsize=(7.2, 3.6), layout="constrained")
-        force, moment = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+        rows, heights = (2, (2, 1)) if jam is None else (3, (2, 1, 1))
+        figure = Figure(figsize=(7.2, 3.6 if jam is None else 4.6), layout="constrained")
+        force, moment, *others = figure.subplots(rows, 1, sharex=True, height_ratios=heights)
         depth = ticks["depth_mm"]
         across_n = np.hypot(ticks["fx_n"], ticks["fy_n"])
         force.plot(*envelope(depth, across_n), **line(SECOND), linewidth=0.8, label="√(Fx² + Fy²)")
         force.plot(*envelope(depth, -ticks["fz_n"]), color=ACCENT, linewidth=0.9, label="−Fz")
         across_nm = np.hypot(ticks["mx_nm"], ticks["my_nm"])
         moment.plot(*envelope(depth, across_nm), **line(SECOND), linewidth=0.8)
+        # Of a peg that slides in freely: beyond it the insertion takes side force and moment for a
+        # jam, and not for a closed hole.
+        force.axhspan(0.0, OUT_OF_BAND_N, color=GOOD_FILL, zorder=0, label="free peg, across")
+        moment.axhspan(0.0, OUT_OF_BAND_NM, color=GOOD_FILL, zorder=0)
         if limit_n is not None:
             force.axhline(limit_n, color=LIMIT, linestyle="--", linewidth=0.8, label="limit")
+        for axes in others:
+            _draw_jam(axes, depth, jam)
         force.set_ylabel("force, N")
         # Which moment it is stands below the picture: a longer word would be higher than the axis.
         moment.set_ylabel("moment, N·m")
-        moment.set_xlabel("depth below the face, mm")
+        figure.axes[-1].set_xlabel("depth below the face, mm")
         # Over the axes: within them it would cover curve or limit.
-        force.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+        force.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=4)
         return to_svg(figure)
+
+
+def _draw_jam(axes: Axes, depth_mm: Array, jam: Array | None) -> None:
+    """Of the ticks that tell it; a line would join what was felt at different times."""
+    assert jam is not None
+    told = np.isfinite(jam)
+    axes.plot(depth_mm[told], np.minimum(jam[told], _MOST_JAM), ".", markersize=2, color=ACCENT)
+    axes.axhline(1.0, color=LIMIT, linestyle="--", linewidth=0.8)
+    axes.set_ylim(0.0, _MOST_JAM * 1.05)
+    axes.set_ylabel("jam ratio")

@@ -2,9 +2,15 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
+from cellctl.geometry.pose import MM, Array
+from cellctl.processes.peg_in_hole.insertion.jam import jam_ratio
+from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart
 from cellctl.processes.peg_in_hole.record import keys
-from cellctl.processes.peg_in_hole.record.tick_log import read_ticks
+from cellctl.processes.peg_in_hole.record.tick_log import ReadTicks, read_ticks
 from cellctl.processes.peg_in_hole.report.drawings import insertion_picture, search_picture
+from cellctl.processes.peg_in_hole.report.stream_picture import stream_picture
 from cellctl.processes.peg_in_hole.verdict.judgement import DEPTH, RESISTED, SLIP
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import (
@@ -89,6 +95,19 @@ def _insertion_limit_n(record: RunRecord) -> float | None:
     return None
 
 
+def _jam(record: RunRecord, ticks: ReadTicks) -> Array | None:
+    """Ratio of each tick; None for runs of earlier versions, which have no task."""
+    written = record.document(keys.TASK)
+    if not written:
+        return None
+    part = JudgedPart.model_validate(written)
+    fit, values = part.fit, ticks.values
+    force_n = np.stack([values[name] for name in ("fx_n", "fy_n", "fz_n")], axis=1)
+    moment_nm = np.stack([values[name] for name in ("mx_nm", "my_nm", "mz_nm")], axis=1)
+    bore_mm = values["depth_mm"] - fit.hole_chamfer_mm - fit.peg_chamfer_mm
+    return jam_ratio(force_n, moment_nm, bore_mm * MM, fit.peg_radius_mm * MM, fit.friction)
+
+
 def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
     for artefact in record.artefacts:
         if artefact.name != keys.ticks(keys.INSERTION):
@@ -99,11 +118,21 @@ def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
             # The file is exported as it is and listed with its hash; there is nothing to draw.
             continue
         yield Drawing(
-            insertion_picture(ticks, _insertion_limit_n(record)),
+            insertion_picture(ticks.values, _insertion_limit_n(record), _jam(record, ticks)),
             "Forces of the hole on the peg along its axis and across it, and the moment across the "
             "axis about its tip, √(Mx² + My²), over the whole stream. Dashed: limit of the "
-            "insertion.",
+            "insertion. Shaded: a peg that slides in freely, across its axis. Jam ratio: side "
+            "force and moment against what two sliding points of contact carry; from 1 on no push "
+            "helps.",
         )
+        if "age_ms" in ticks.values:
+            trace = record.document(keys.TRACE) or {}
+            yield Drawing(
+                stream_picture(ticks, trace.get("contacts", [])),
+                "What the arm did, with the classes of the first contacts; depth of the tip; its "
+                "speed as commanded, and where an axis had given way as far as it may; age of the "
+                "ticks and of the newest force at each.",
+            )
     failure, result = record.document(keys.FAILURE), record.document(keys.CYCLE)
     if failure:
         found_by = failure["found_by"] or "not found"
