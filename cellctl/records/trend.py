@@ -76,6 +76,7 @@ def trend(samples: Sequence[Sample]) -> Trend:
     values = [sample.value for sample in samples]
     mean = fmean(values)
     ranges = [abs(b - a) for a, b in itertools.pairwise(values)]
+    # Not the standard deviation of all values: a slow drift would widen that, and so hide itself.
     sigma = fmean(ranges) / _D2
     newest = samples[-1]
     enough = len(samples) >= _LEAST and sigma > 0
@@ -119,7 +120,7 @@ def _cpk(newest: Sample, mean: float, sigma: float, count: int) -> Index | None:
 
 
 def _chi_square_shares(freedom: float) -> tuple[float, float]:
-    """Quantiles of chi square by its degrees of freedom, by Wilson and Hilferty's approximation.
+    """Quantiles of chi square over its degrees of freedom: Wilson and Hilferty's approximation.
 
     Within 3 % of the exact ones from six degrees of freedom on, and without loading scipy.
     """
@@ -130,7 +131,10 @@ def _chi_square_shares(freedom: float) -> tuple[float, float]:
 
 
 def _signals(samples: Sequence[Sample], mean: float, sigma: float) -> Iterator[Signal]:
-    """Rules 1, 2 and 3 of Nelson (1984): far out, long on one side, steadily moving."""
+    """Far out, long on one side, steadily moving: rules 1 to 3 of Nelson (1984).
+
+    The second with the eight in a row of the Western Electric rules, where Nelson has nine.
+    """
     side, moving = 0, 0
     before: float | None = None
     for sample in samples:

@@ -60,6 +60,8 @@ def weigh_views(prior: Array, information: Array, pulls: Array, name: str) -> We
             for own, pull in zip(information, pulls, strict=True)
         ]
     )
+    # The jackknife's covariance is (v - 1) / v times the sum of the squared moves; ``_shrunk``
+    # divides by v.
     spread = _shrunk(moves * np.sqrt(max(len(moves) - 1, 1)))
     # Views that agree better than their noise allows may do so by luck: never below the noise.
     values, vectors = np.linalg.eigh(spread)
@@ -70,7 +72,9 @@ def weigh_views(prior: Array, information: Array, pulls: Array, name: str) -> We
 
 
 def _move(information: Array, pull: Array) -> Array:
-    """How far the solution moves without a view."""
+    """How far the solution moves without a view, by one Newton step, shape (s,)."""
+    # All pulls add up to nothing at the solution. Without this view -pull is left, and of the
+    # information, which is the unit matrix in these coordinates, what the view does not give.
     values, vectors = np.linalg.eigh(information)
     rest = np.maximum(1 - values, _LEAST_REST)
     move: Array = -vectors @ ((vectors.T @ pull) / rest)

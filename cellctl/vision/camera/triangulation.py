@@ -71,6 +71,8 @@ def triangulate(
     # The residual after the last step, to first order: exact enough here, and it saves a
     # projection.
     residual = residual - jacobian @ step
+    # Four coordinates and three unknowns leave one degree of freedom, that across the epipolar
+    # line: the root of its square is a number of standard deviations.
     misfit = float(np.sqrt(max(float(residual @ weight @ residual), 0.0)))
     return StereoPoint(point, np.asarray(np.linalg.inv(normal), dtype=float), misfit)
 

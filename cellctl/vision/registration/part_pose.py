@@ -272,6 +272,7 @@ def _paper_pose(nominal_m: Array, measured_m: Array) -> RigidTransform:
 
 
 def _numeric_gain(nominal_m: Array, measured_m: Array, pose: RigidTransform) -> Array:
+    # The paper's frame is a construction, not a least-squares fit: it has no gain in closed form.
     step_m = 1e-7
     gain = np.zeros((6, measured_m.size))
     for column in range(measured_m.size):

@@ -67,6 +67,8 @@ def relative_pose(
         poses = [perturbed(poses[0], step[_PART_1]), perturbed(poses[1], step[_PART_2])]
         movement = movement + step[_HEADS]
     normal, _, chi2 = _equations((part_1, part_2), poses, movement, prior)
+    # Two poses are six unknowns each. The six of the movement come with six observations of their
+    # own, what is known of it beforehand, and cancel.
     freedom = 3 * (len(part_1.names) + len(part_2.names)) - 12
     misfit = ChiSquare(chi2, freedom)
     jacobian = _by_poses(*poses)
@@ -115,6 +117,8 @@ def _by_sway(
         design[:, :, place] = by_pose(pose.rotation.apply(points.nominal_m))
         design[:, :, _HEADS] = points.by_transfer
         weighted = np.linalg.inv(points.covariances_m2) @ design
+        # Only points that head II saw depend on c1_T_c2. Each head sways by itself, so what both
+        # do adds in squares; in the average over several pictures it shrinks like any noise.
         of_head_2 = points.by_transfer.any(axis=(1, 2))
         for of_head in (of_head_2, ~of_head_2):
             gain = known @ weighted[of_head].sum(axis=0)[:2].T
@@ -124,6 +128,8 @@ def _by_sway(
 
 def _by_poses(c1_T_part_1: RigidTransform, c1_T_part_2: RigidTransform) -> Array:
     """Derivative of ``part_1_T_part_2`` by both poses in c1, shape (6, 12)."""
+    # With R1, t1 and R2, t2 the place of part 2 in part 1 is R1ᵀ (t2 - t1): moving both parts
+    # alike changes nothing, and a turn of part 1 swings the lever between them.
     into_1 = c1_T_part_1.rotation.inv().as_matrix()
     between = c1_T_part_2.translation - c1_T_part_1.translation
     jacobian = np.zeros((6, 12))

@@ -30,6 +30,8 @@ _CHANCE = 2.1
 what exceeds it widens the covariance."""
 
 _STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
+# Bartlett's triangle, as Newey and West have it. It is a box correlated with itself, so that no
+# choice of sums can give a negative variance.
 _KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
 
 

@@ -26,7 +26,7 @@ _RING_LIMITS = (1.02, 1.7)
 _RIDGE = 1e-11
 """Added to the unit diagonal of a normal matrix, so that terms that no pixel shows stay finite."""
 _FLAT_WEIGHT = 0.04
-"""Weight of every pixel before its noise is known, 1/grey²."""
+"""Weight of every pixel before its noise is known, 1/grey²: that of a noise of 5 grey."""
 
 
 def add_to_diagonal(matrix: Array, values: Array | float) -> None:

@@ -64,6 +64,7 @@ class RimFit:
         # models.
         limit = 4.0 * max(median(residuals), 0.2)
         mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
+        # An unknown that a prior holds is not free to follow the noise.
         free = int(np.count_nonzero(self.solution.precision == 0.0))
         return count * float(np.log(mean_square)) + free * float(np.log(count))
 

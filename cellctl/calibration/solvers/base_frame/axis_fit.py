@@ -110,6 +110,7 @@ def fit_axis(stops: Sequence[AxisStop], joint: int, sign: int, noise: ArmNoise) 
 
     start = np.concatenate([np.zeros(4), positions.ravel()])
     solution = weighted_least_squares(residuals, start)
+    # Back from the two coordinates across the line to x, y, z; along it nothing is uncertain.
     four = solution.covariance[:4, :4]
     lift = np.zeros((6, 4))
     lift[:3, :2] = lift[3:, 2:] = basis.T

@@ -241,6 +241,7 @@ def _warnings(name: str, fit: AxisFit) -> tuple[str, ...]:
         warnings.append(f"{name} turned by {np.degrees(fit.arc_rad):.0f}° only; 90° are advised")
     if len(fit.targets) < 2:
         warnings.append(f"{name} was seen with a single target; six are advised")
+    # Squares: beyond twice the stated noise.
     if fit.chi2_ratio > 4:
         warnings.append(f"{name} scatters {np.sqrt(fit.chi2_ratio):.1f} times the stated noise")
     return tuple(warnings)

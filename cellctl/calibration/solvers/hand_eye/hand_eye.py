@@ -67,6 +67,7 @@ def calibrate_hand_eye(
         spare = len(used) > max(MIN_POSES, _LEAST_KEPT * len(poses))
         if squares[worst] <= _OUTLIER_CHI2 * typical or not spare:
             break
+        # One at a time: a gross error pulls the solution and makes good poses look bad.
         rejected.append(used.pop(worst).name)
     residuals = {pose.name: _distance(pose, setup, x, z) for pose in poses}
     kept = np.array([residuals[pose.name] for pose in used])
@@ -152,6 +153,7 @@ def _warnings(rejected: Sequence[str], chi2_ratio: float) -> tuple[str, ...]:
     warnings = []
     if rejected:
         warnings.append(f"poses left out as gross errors: {', '.join(rejected)}")
+    # Squares: beyond twice the stated noise.
     if chi2_ratio > 4:
         warnings.append(
             f"residuals are {np.sqrt(chi2_ratio):.1f} times the stated noise of robot and camera"

@@ -230,11 +230,15 @@ def _likeliest_scales(here: _Linearised, shares: Array, start: Steps) -> Steps:
 
 
 def _restricted_cost(here: _Linearised, shares: Array, steps: Steps) -> float:
+    """Minus twice the logarithm of the restricted likelihood and of the prior of the scales."""
     covariances = here.covariances(NoiseScales.of(steps))
     weights = np.linalg.inv(covariances) * shares[:, None, None]
     step, normal = _step(here, weights)
     left = here.raw + here.design @ step
     squares = np.einsum("ni,nij,nj->", left, weights, left)
+    # Great scales make every square small: the determinant of the covariances is their price. That
+    # of the normal matrix is what "restricted" adds, for the twelve unknowns that fit themselves
+    # to the residuals.
     sizes = np.linalg.slogdet(covariances)[1].sum() + np.linalg.slogdet(normal)[1]
     prior = np.square(np.array(steps) * np.log(_STEP) / _SCALE_SIGMA).sum()
     return float(squares + sizes + prior)
@@ -253,6 +257,8 @@ def _squares(here: _Linearised, scales: NoiseScales) -> Array:
 
 def _covariance(here: _Linearised, shares: Array, scales: NoiseScales) -> Array:
     """Covariance of the solution that these weights give, for the noise that was found."""
+    # The inverse of the normal matrix would do if the weights were the inverse of the noise. With
+    # the shares of Student's distribution they are not: hence the product of three.
     errors = here.covariances(scales)
     weights = np.linalg.inv(errors) * shares[:, None, None]
     weighted = weights @ here.design

@@ -117,6 +117,7 @@ def _motions(
         if _MIN_TURN_RAD <= a.rotation.magnitude() <= _MAX_TURN_RAD:
             robot.append(a)
             camera.append(camera_T_board[j] * camera_T_board[i].inv())
+    # Two turns about different axes determine X; the third shows whether they belong together.
     if len(robot) < 3:
         raise PosesNotDiverse("fewer than three pairs of poses turn by 3° or more")
     return robot, camera
