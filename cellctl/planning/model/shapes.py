@@ -16,11 +16,11 @@ class Shape(ABC):
 
     @abstractmethod
     def geometry(self) -> Any:
-        """For the collision library."""
+        """The shape for the collision library."""
 
     @abstractmethod
     def mesh(self) -> trimesh.Trimesh:
-        """For pictures."""
+        """The shape for pictures."""
 
     @property
     @abstractmethod
@@ -37,7 +37,7 @@ class CapsuleShape(Shape):
 
     ball_m: float
     length_m: float
-    """Between the middles of the ends."""
+    """Distance between the middles of the ends."""
 
     def geometry(self) -> Any:
         """As FCL has it: the length between the middles."""
@@ -52,7 +52,7 @@ class CapsuleShape(Shape):
 
     @property
     def radius_m(self) -> float:
-        """To the tips."""
+        """Radius about the middle that reaches to the tips."""
         return self.length_m / 2 + self.ball_m
 
 
@@ -72,7 +72,7 @@ class BoxShape(Shape):
 
     @property
     def radius_m(self) -> float:
-        """To the corners."""
+        """Radius about the middle that reaches to the corners."""
         return float(np.linalg.norm(self.size_m)) / 2
 
 
@@ -96,6 +96,6 @@ class MeshShape(Shape):
 
     @property
     def radius_m(self) -> float:
-        """To the farthest corner."""
+        """Radius about the origin that reaches to the farthest corner."""
         corners: Array = np.asarray(self.surface.vertices, dtype=float)
         return float(np.linalg.norm(corners, axis=1).max())

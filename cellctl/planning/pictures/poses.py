@@ -16,7 +16,7 @@ class DrawnBody:
     name: str
     solid: Solid
     mesh: trimesh.Trimesh
-    """In the frame of the cell, in m."""
+    """The body in the frame of the cell, in m."""
     ghost: bool
 
 

@@ -20,7 +20,7 @@ class Standpoint:
     """Where another arm stands while one moves."""
 
     label: str
-    """For findings, for example ``measuring``."""
+    """Name in findings, for example ``measuring``."""
     joints_rad: tuple[float, ...]
 
 
@@ -34,7 +34,7 @@ class CellScene:
     approaches: Clearances
     """What stays free, in m, between two bodies in an approach."""
     heads: Mapping[str, HeadLimits]
-    """Of the stereo heads that the model describes."""
+    """Limits of the stereo heads that the model describes."""
 
     def around(
         self,

@@ -23,9 +23,9 @@ class HeadLimits:
     """From here on, along the line of sight, a rim is sharp."""
     farthest_m: float
     margin_px: float
-    """Between a rim and the edge of the image."""
+    """Least distance between a rim and the edge of the image."""
     greatest_angle_rad: float
-    """Between a line of sight and the axis of a bore."""
+    """Greatest angle between a line of sight and the axis of a bore."""
     lit_within_rad: float
-    """Between the axis of the lamp and the way to a hole."""
+    """Greatest angle between the axis of the lamp and the way to a hole."""
     quality: ImageQuality

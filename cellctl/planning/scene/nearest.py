@@ -12,10 +12,10 @@ class NarrowestGap:
     first: str
     second: str
     distance_m: float
-    """Between them; 0 or less where they touch."""
+    """Distance between the two; 0 or less where they touch."""
     required_m: float
     place_m: Array
-    """In the middle between the two, shape (3,), in the frame of the cell."""
+    """The middle between the two nearest points, shape (3,), in the frame of the cell."""
 
     @property
     def slack_m(self) -> float:

@@ -13,7 +13,7 @@ from cellctl.planning.scene.nearest import NarrowestGap
 from cellctl.planning.scene.solid import Solid
 
 Clearances = Mapping[frozenset[str], float]
-"""In m, for pairs of bodies that a process brings together."""
+"""Clearances in m, for pairs of bodies that a process brings together."""
 
 _WITH_POINTS = fcl.DistanceRequest(enable_nearest_points=True)
 

@@ -28,7 +28,7 @@ class Gain:
 
 
 def gains(scene: CellScene, placement: ViewGeometry) -> Iterator[Gain]:
-    """With both heads where they are planned."""
+    """What is gained with both heads where they are planned."""
     statement = placement.measurement
     most = replace(placement, frames=statement.max_frames)
     yield Gain(

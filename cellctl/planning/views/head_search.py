@@ -27,7 +27,7 @@ class Viewpoint:
 
     look: HeadLook
     joints_rad: Array
-    """Of its arm, shape (6,)."""
+    """Joints of its arm, shape (6,)."""
     cell_T_camera: RigidTransform
     """Its left camera."""
 
@@ -41,7 +41,7 @@ class HeadSearch:
     limits: HeadLimits
     parts: tuple[SeenHoles, ...]
     others: Mapping[str, tuple[Standpoint, ...]]
-    """Of the arms that carry no head."""
+    """Places of the arms that carry no head."""
     sights: tuple[tuple[SeenHoles, Mapping[str, Array]], ...]
     """What the head looks at, and where those arms stand meanwhile."""
     aim: RigidTransform

@@ -24,9 +24,9 @@ class HeadLook:
     """Rotation vector by which the line of sight leaves the normal of the parts."""
     tilt_y_rad: float = 0.0
     roll_rad: float = 0.0
-    """Of the baseline about the line of sight."""
+    """Turn of the baseline about the line of sight."""
     shift_x_m: float = 0.0
-    """Of the place it looks at, in the plane of the parts."""
+    """Shift of the place it looks at, in the plane of the parts."""
     shift_y_m: float = 0.0
 
     def cell_T_middle(self, cell_T_aim: RigidTransform) -> RigidTransform:

@@ -27,7 +27,7 @@ Pair = tuple[Viewpoint, Viewpoint]
 _KEPT = 8
 """Places of each head that are combined with those of the other."""
 _STEPS = (1.0, 0.5, 0.25)
-"""Of the refinement, in steps of the grid."""
+"""Width of each round of the refinement, in steps of the grid."""
 _ALIKE = 1.01
 """Predictions that differ by less are one: then the shorter way decides."""
 _APART_M, _APART_RAD = 0.05, float(np.radians(10.0))
@@ -42,7 +42,8 @@ class PlannedPair:
     viewpoints: Pair
     predicted: PredictedPose
     time_s: float
-    """Of the slower arm, from the pose that the cell file has first beside the measuring one."""
+    """Time of the slower arm from the pose that the cell file has first beside the measuring
+    one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +51,7 @@ class PlannedViews:
     """What was found for one measurement."""
 
     placement: ViewGeometry
-    """With the best pair."""
+    """Where the heads stand with the best pair."""
     best: PlannedPair
     runners_up: tuple[PlannedPair, ...]
     taught: PlannedPair
@@ -60,7 +61,7 @@ class PlannedViews:
 
 
 def stated_measurements(scene: CellScene, folder: Path) -> Iterator[StatedMeasurement]:
-    """Of all recipes; ``folder`` is that of the cell file."""
+    """The measurements of all recipes; ``folder`` is that of the cell file."""
     for recipe in scene.cell.recipes:
         yield from process_definition(recipe.process).measurements(scene.cell, recipe, folder)
 
@@ -215,7 +216,7 @@ class ViewpointPlan:
 
 
 def _quickest(pairs: Sequence[PlannedPair]) -> PlannedPair:
-    """Of those that are as good as the best, the one that takes the least time."""
+    """The pair that takes the least time, of those that are as good as the best."""
     alike = [one for one in pairs if one.predicted.worst <= _ALIKE * pairs[0].predicted.worst]
     return min(alike, key=lambda pair: pair.time_s)
 

@@ -89,7 +89,7 @@ def _slopes(rays_m: Array, outward: Array) -> Array:
 
 
 def _open_slope(hole: Hole) -> float:
-    """Up to which tangent the whole rim is seen, over the edge of what it lies under."""
+    """Tangent up to which the whole rim is seen, over the edge of what it lies under."""
     depth_m = sunk_m(hole)
     # A rim in the face is hidden by nothing.
     if depth_m == 0.0:

@@ -15,8 +15,8 @@ OUT_OF_REACH = "the arm does not reach there"
 NEAR_A_LIMIT = "a joint or the flange is too near to its limit"
 SINGULAR = "the arm is near a singular pose"
 _LEAST_SINGULAR = 0.08
-"""Of the Jacobian with turns over half a metre. At the wrist's and the elbow's singular poses it is
-0; 0.08 means that the flange's 250 mm/s ask at most 180 °/s of a joint."""
+"""Least singular value of the Jacobian with turns over half a metre. At the wrist's and the elbow's
+singular poses it is 0; 0.08 means that the flange's 250 mm/s ask at most 180 °/s of a joint."""
 _LEVER_M = 0.5
 
 

@@ -29,9 +29,9 @@ class CheckedMove:
 
     move: StatedMove
     narrowest: SweptGap | None
-    """None where the arm cannot make the move at all."""
+    """The narrowest gap on the way; None where the arm cannot make the move at all."""
     fault: PlanningError | None
-    """None for a move that is good."""
+    """Why the move is not good; None for one that is."""
 
 
 def stated_moves(cell: CellConfig) -> Iterator[StatedMove]:

@@ -14,8 +14,8 @@ from cellctl.planning.ways.travel import travel_s
 RESERVE_M = 0.005
 """What the search keeps beyond the margins, so that points may be rounded and cut short."""
 _STEP_SHARE = 0.01
-"""Between two looks of the search, as a share of the whole space of joints; the result is then
-swept without a gap."""
+"""Distance between two looks of the search, as a share of the whole space of joints; the result is
+then swept without a gap."""
 _SHORTCUTS = 40
 
 

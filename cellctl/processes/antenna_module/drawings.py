@@ -41,9 +41,9 @@ class Plate:
     """The reference plate as either camera sees it."""
 
     above: Marks
-    """By camera I."""
+    """The marks that camera I sees."""
     below: Marks
-    """By camera II."""
+    """The marks that camera II sees."""
     base_T_plate: Place
 
 

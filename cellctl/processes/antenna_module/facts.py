@@ -58,12 +58,12 @@ class PluggingFacts:
     plug_cell: PlugCell
     scheme: Scheme
     correction: PlugCorrection | None
-    """Of this recipe; None for a scheme that does without."""
+    """What was taught for this recipe; None for a scheme that does without."""
     drawings: Drawings
     plate: Plate | None
-    """None in a cell without one."""
+    """The calibrated plate; None in a cell without one."""
     reference: TaughtReference | None
-    """None in a cell without a plate, and while it is being taught."""
+    """The taught reference; None in a cell without a plate, and while it is being taught."""
 
     @property
     def required_plate(self) -> Plate:

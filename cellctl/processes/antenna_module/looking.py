@@ -57,7 +57,7 @@ class Seen(Generic[M]):
     """As the arm reported it while the images were taken."""
     joints_rad: Array
     time_s: float
-    """Of the last image."""
+    """Time of the last image."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +70,7 @@ class Eyes:
     """Where raw images go; None where they are not kept."""
     frames: int
     exposures: RunExposures | None = None
-    """Of its cameras; None where they stay as they are."""
+    """Exposures of its cameras; None where they stay as they are."""
 
     async def look(self, name: str, camera: Camera, measure: Callable[[Image], M]) -> Seen[M]:
         """Settle, take the images, measure each in a worker; ``name`` is that of the raw images.

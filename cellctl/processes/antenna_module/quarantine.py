@@ -5,7 +5,7 @@ from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 
 _MOST_RUNS = 1000
-"""Of one serial number that are looked at, the newest."""
+"""Most runs of one serial number that are looked at; they are the newest."""
 
 
 async def require_not_in_quarantine(recorder: RunRecorder) -> None:

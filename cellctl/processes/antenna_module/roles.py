@@ -12,7 +12,8 @@ TRAY_LOOK, INSPECT_PLUG, SOCKET_LOOK = "tray_look", "inspect_plug", "socket_look
 """Camera I over the tray; the plug over camera II; camera I over the socket, with the flange at the
 height and in the orientation of plugging."""
 BOARD_LOOK, BOARD_SHOW = "board_look", "board_show"
-"""For calibration: camera I over the board on the table; the board on the flange over camera II."""
+"""Poses for calibration: camera I over the board on the table; the board on the flange over camera
+II."""
 REFERENCE_LOOK = "reference_look"
 """Camera I over the reference plate, in a cell that has one. No lower than ``inspect_plug``: on the
 way between both the fingers pass over the plate."""

@@ -25,7 +25,7 @@ class ModuleFound(GripperEmpty):
     base_T_connector: RigidTransform
     """Where its plug is, as far as the top shows it."""
     top_height_m: float
-    """Of the marks on its top along z of the base, by how large they look."""
+    """Height of the marks on its top along z of the base, judged by how large they look."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

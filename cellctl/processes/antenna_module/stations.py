@@ -29,7 +29,8 @@ class AntennaCell:
     gripper: Gripper
     settings: AntennaSettings
     flange_T_camera_1: RigidTransform
-    """By the cell file, for planning views only; what was measured, procedure 203 stores."""
+    """Pose of camera I by the cell file, for planning views only; what was measured, procedure 203
+    stores."""
 
     @classmethod
     def of(cls, cell: Cell, recipe: AntennaRecipe) -> "AntennaCell":

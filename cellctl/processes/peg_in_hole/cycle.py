@@ -39,7 +39,8 @@ class CyclePlan:
     seat: PegSeatLimits
     face: FacePlan
     grip_force_n: float | None
-    """None where nobody has measured it: the touch on the rear is needed then."""
+    """Force with which the gripper holds the peg; None where nobody has measured it: the touch on
+    the rear is needed then."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +69,7 @@ class CycleLog:
     hole_map: HoleMap
     trace: SearchTrace = field(default_factory=SearchTrace)
     found_by: SearchName | None = None
-    """None until the peg has entered."""
+    """The search that found the hole; None until the peg has entered."""
     contacts: Contacts = field(default_factory=list)
 
     @classmethod

@@ -11,7 +11,7 @@ from cellctl.processes.peg_in_hole.roles import HOME
 from cellctl.processes.peg_in_hole.stations import PegCell, peg_recipes, weight_of
 
 CLEAR_OF_FACE_M = 15e-3
-"""Over the face a joint move may begin."""
+"""Height over the face from which on a joint move may begin."""
 _BESIDE_M = 50e-3
 """Farther than this from the axis of a hole nothing stands in the way."""
 _TWIST_N_M = 2.0

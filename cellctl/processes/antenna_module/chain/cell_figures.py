@@ -32,7 +32,7 @@ class ArmFigures:
 
     @property
     def approach_covariance(self) -> Array:
-        """Of one approach, shape (6, 6)."""
+        """Covariance of one approach of the arm, shape (6, 6)."""
         return isotropic(self.repeatability_m, self.repeatability_rad)
 
 
@@ -53,15 +53,17 @@ class MountedCamera:
 
     id: str
     camera_id: str
-    """Of the intrinsics that it was made with. Exchanging them afterwards moves what is measured
-    by the difference of the principal points, which the hand-eye calibration had absorbed."""
+    """Identity of the intrinsics that it was made with. Exchanging them afterwards moves what is
+    measured by the difference of the principal points, which the hand-eye calibration had
+    absorbed."""
     pose: UncertainPose
     """flange_T_cam1 or base_T_cam2."""
 
 
 @dataclass(frozen=True, slots=True)
 class DrawingIdentities:
-    """Of what the drawings say of places; empty where a drawing is not known or not there."""
+    """Identities of what the drawings say of places; empty where a drawing is not known or not
+    there."""
 
     plug: str = ""
     socket: str = ""

@@ -17,7 +17,7 @@ class Look:
     """Shape (6,), as the controller reports them."""
     time_s: float
     camera_id: str
-    """Of the intrinsics that the picture was measured with."""
+    """Identity of the intrinsics that the picture was measured with."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -51,7 +51,7 @@ class PlugTolerance:
     """What the predicted 99th percentile of the worst contact may be: the tolerance of the fit that
     the paper states."""
     max_age_s: float = 60.0
-    """Of a look."""
+    """Greatest age of a look."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

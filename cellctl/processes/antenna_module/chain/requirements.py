@@ -13,7 +13,8 @@ from cellctl.processes.antenna_module.faults.plugging import (
 )
 
 MAX_AGE_S = 60.0
-"""Between a look and its plan. In this time a warming cell moves by well below a micrometre."""
+"""Greatest time between a look and its plan. In it a warming cell moves by well below a
+micrometre."""
 
 
 def require_fresh(looks: Looks, now_s: float, max_age_s: float = MAX_AGE_S) -> None:

@@ -151,7 +151,7 @@ RETICLE = Scheme(
 SCHEMES: Mapping[str, Scheme] = {
     scheme.name: scheme for scheme in (DIFFERENCE, ABSOLUTE, GOLDEN, RETICLE)
 }
-"""By name; the first is the default."""
+"""All schemes by their names; the first is the default."""
 
 
 def constant_errors(scheme: Scheme, cell: PlugCell, distance_m: float) -> Mapping[Term, Array]:

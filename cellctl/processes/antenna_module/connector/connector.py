@@ -43,14 +43,15 @@ class Connector:
     positions_m: Array
     """x and y of the contacts, shape (n, 2)."""
     diameter_m: float
-    """Of a pin, or of the bore of a hole below its funnel."""
+    """Diameter of a pin, or of the bore of a hole below its funnel."""
     length_m: float
     """What stands out of the insulator; depth of a hole."""
     rim_depth_m: float
     """How far below z = 0 the rim lies that an image shows, as the end of a funnel. Seen off the
     camera's axis a deeper rim appears nearer to the axis."""
     chamfer_m: float
-    """Of the tip of a pin, at 45°: the flat stands out over the rim by this; 0 for holes."""
+    """Chamfer of the tip of a pin, at 45°: the flat stands out over the rim by this; 0 for
+    holes."""
     true_position_m: float
     """Standard deviation per axis of a good contact's place."""
     symmetric: bool

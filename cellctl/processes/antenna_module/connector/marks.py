@@ -46,7 +46,7 @@ class Marks:
     """x and y, shape (n, 2)."""
     diameter_m: float
     height_m: float
-    """Of the marks' plane over that of the contacts, towards the camera."""
+    """Height of the marks' plane over that of the contacts, towards the camera."""
     marks_T_connector: RigidTransform
     """Where the plug sits when it is gripped as drawn, in the plane."""
     within_m: float

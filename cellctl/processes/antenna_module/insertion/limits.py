@@ -8,7 +8,8 @@ import numpy as np
 from cellctl.processes.antenna_module.connector.connector import Connector
 
 _ENTRY_AXIAL_N_M = 6e3
-"""Of the radius that a funnel takes; 1.2 N for a micro-D."""
+"""Axial force at the entry for each metre of the radius that a funnel takes; 1.2 N for a
+micro-D."""
 _ENTRY_TURNING_N, _TURNING_N = 1.75, 4.4
 """Side force on the contact that is farthest from the middle, as a moment about z: 0.008 and
 0.02 N·m for a micro-D, the first six times the noise of a mean of three samples. A turned module
@@ -16,7 +17,7 @@ shows there first."""
 _FORCE_SPREAD = 0.25 / 3**0.5
 """Contacts of one lot differ evenly by a quarter up and down; this is one sigma."""
 _TILT_RAD = float(np.radians(0.15))
-"""Of a plug in the gripper, one sigma."""
+"""Tilt of a plug in the gripper, one sigma."""
 _SIGMAS = 4.0
 
 
@@ -55,14 +56,14 @@ class InsertionLimits:
     """Axial force of a good plugging, at most."""
     contacts: int
     spread_m: float
-    """Of the contacts about the middle of the connector, rms."""
+    """Spread of the contacts about the middle of the connector, rms."""
     entry_axial_n: float
     """A plug that is off by half of what the funnels take begins at 1.4 times as much, a good one
     stays below it; B11 and B12 in docs/plugging-figures.md."""
     entry_moment_z_n_m: float
     moment_z_n_m: float
     entry_height_m: float = 0.5e-3
-    """Above the first touch, from where on the plug moves slowly."""
+    """Height above the first touch from where on the plug moves slowly."""
     travel_m_s: float = 5e-3
     early_touch_m: float = 0.0
     """Touch and springs may come so much earlier or later than drawn: heights are uncertain. What
@@ -78,24 +79,26 @@ class InsertionLimits:
     """Depth over which the contact springs open, at most."""
     above_n: float = 3.0
     entry_rise_n: float = 0.08
-    """By how much the axial force must exceed its own mean of the last 0.1 s: a hose that pulls
-    steadily is not a contact."""
+    """Rise of the axial force over its own mean of the last 0.1 s that counts as a contact: a hose
+    that pulls steadily is none."""
     entry_most_n: float = 3.0
     """Whatever it was before."""
     entry_side_n: float = 1.5
     sliding_side_n: float = 3.0
     over_n: float = 10.0
-    """Above ``greatest_n``: allowed at the seat."""
+    """How much more than ``greatest_n`` is allowed at the seat."""
     centre_of_pressure_m: float = 1e-3
-    """At least; more where the contacts reach so far that good ones need it."""
+    """Limit of the centre of pressure, at least; it is greater where the contacts reach so far that
+    good ones need it."""
     lever_error_m: float = 0.0
-    """By which the centre of pressure is wrong, whatever the connector."""
+    """Error of the centre of pressure, whatever the connector is."""
     least_pressure_n: float = 8.0
-    """Below this axial force the centre of pressure is not certain: contacts of one lot differ by a
-    quarter, and a moment good to 0.002 N·m is worth a quarter of a millimetre."""
+    """Axial force below which the centre of pressure is not certain: contacts of one lot differ by
+    a quarter, and a moment good to 0.002 N·m is worth a quarter of a millimetre."""
     pressure_mean_s: float = 0.07
-    """Over which force and moment are averaged for the centre of pressure. Gripper and module swing
-    at about 14 Hz, and on a lever of 0.2 m a few hundredths of a newton are half a millimetre."""
+    """Time over which force and moment are averaged for the centre of pressure. Gripper and module
+    swing at about 14 Hz, and on a lever of 0.2 m a few hundredths of a newton are half a
+    millimetre."""
     seat_rise_n: float = 10.0
     seat_within_m: float = 0.1e-3
     """The force rises by ``seat_rise_n`` within this depth at the seat."""

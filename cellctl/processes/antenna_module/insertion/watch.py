@@ -105,7 +105,7 @@ class _RunningMean:
         self._sum = np.zeros(6)
 
     def of(self, sample: InsertionSample) -> InsertionSample:
-        """With the next sample."""
+        """The means with the next sample taken in."""
         # Summed up as it goes: a thousand samples a second are too many to add up seventy of them
         # for each.
         wrench = np.concatenate([sample.force_n, sample.moment_n_m])

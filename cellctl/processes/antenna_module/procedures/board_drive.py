@@ -41,7 +41,7 @@ class BoardDrive:
 
     @property
     def views(self) -> tuple[CameraView, ...]:
-        """Of all stops."""
+        """The views of all stops."""
         return tuple(stop.view for stop in self.stops)
 
 

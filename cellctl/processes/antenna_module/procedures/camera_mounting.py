@@ -36,7 +36,8 @@ from cellctl.runtime.process import CellServices
 from cellctl.workers import SOLVE_S
 
 _LOCAL_SHARE = 0.45
-"""Of the arm's mean absolute error, standard deviation per axis among neighbouring poses."""
+"""Standard deviation per axis among neighbouring poses, as a share of the arm's mean absolute
+error."""
 _REACH_M = 0.8
 """The lever that makes an error of position from one of angle."""
 _LIMITS = HandEyeLimits(position_sigma_m=2e-4, rotation_sigma_rad=float(np.radians(0.03)))

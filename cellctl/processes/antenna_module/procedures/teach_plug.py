@@ -111,7 +111,8 @@ async def _looked_at(run: PluggingRun) -> SocketLocated:
 
 
 async def _wait_above(located: SocketLocated) -> None:
-    """Above the socket as far as it is known without a correction: the operator does the rest."""
+    """Wait above the socket as far as it is known without a correction: the operator does the
+    rest."""
     run, look = located.run, located.looks.sockets[-1]
     base_T_socket = run.facts.plug_cell.base_T_cam1(look.base_T_flange) * look.camera_T_socket.pose
     socket = run.drawings.socket

@@ -40,9 +40,9 @@ class PushAttempt:
     watch: InsertionWatch
     recorder: ContactRecorder
     settle_s: float = 0.05
-    """After a move of a tenth of a millimetre the arm has stopped swinging."""
+    """Time after which the arm has stopped swinging from a move of a tenth of a millimetre."""
     read_s: float = 0.1
-    """Over which a reading is averaged."""
+    """Time over which a reading is averaged."""
     fed_s: float = -np.inf
     """Time of the last sample that the watch has seen."""
 

@@ -19,7 +19,7 @@ from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, Trip
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 
 ACCELERATION_M_S2 = 0.02
-"""So low that gripper and module, 3 kg, make less than a tenth of a newton of it."""
+"""Acceleration so low that gripper and module, 3 kg, make less than a tenth of a newton of it."""
 FINE_M = 0.02e-3
 """Length of a move near the seat: what holds the plug is so stiff that a tenth of a millimetre more
 would be 50 N."""
@@ -74,7 +74,7 @@ def _step_m(attempt: PushAttempt, depth_m: float, step_m: float) -> float:
 
 
 async def _travel_near(attempt: PushAttempt) -> None:
-    """To just above the first touch, where nothing may be felt."""
+    """Travel to just above the first touch; nothing may be felt on the way."""
     limits = attempt.limits
     above = limits.at(-limits.entry_height_m - 1e-6)
     await attempt.arm(above)

@@ -51,8 +51,8 @@ def _expected_top(inserted: Inserted) -> RigidTransform:
 
 
 async def _bring_camera_over(inserted: Inserted, base_T_top: RigidTransform) -> None:
-    """To where the socket was seen from, and higher by as much as the top lies over the socket: the
-    camera keeps its distance."""
+    """Move to where the socket was seen from, and higher by as much as the top lies over the
+    socket: the camera keeps its distance."""
     run, look = inserted.run, inserted.looks.sockets[-1]
     base_T_cam1 = run.facts.plug_cell.base_T_cam1(look.base_T_flange)
     socket_m = (base_T_cam1 * look.camera_T_socket.pose).translation

@@ -25,7 +25,7 @@ from cellctl.processes.antenna_module.vision.measurement import (
 from cellctl.processes.antenna_module.vision.result_file import result_to_json
 
 _AWAY_M = 5e-3
-"""Between two looks: far enough that the arm approaches its place anew."""
+"""How far the arm goes away between two looks: so far that it approaches its place anew."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

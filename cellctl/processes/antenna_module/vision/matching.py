@@ -14,7 +14,8 @@ from cellctl.geometry.pose import Array
 _PAIRS = 6
 _MOST_STARTS = 200
 _LENGTH_TOLERANCE = 0.04
-"""Of the distance of two contacts: a wrong scale is judged later, and has to be found for that."""
+"""Tolerance of the distance of two contacts, relative: a wrong scale is judged later, and has to be
+found for that."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

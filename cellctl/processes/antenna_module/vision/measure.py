@@ -50,9 +50,10 @@ fault then says that it is another connector, and not that there is none."""
 _SURPLUS = 2
 """Contacts more than drawn from which it is another connector."""
 _CONTACT_REACH = 0.35
-"""Of the least distance of two contacts: bent ones count, the next one does not."""
+"""How far a contact is looked for, over the least distance of two contacts: bent ones count, the
+next one does not."""
 _MARK_REACH = 0.25
-"""Of a mark's diameter: marks do not bend."""
+"""How far a mark is looked for, over its diameter: marks do not bend."""
 _MARK_TRUE_POSITION_M = 5e-6
 _BORE_SEEN_M, _BORE_SIGMA_M = 0.25e-3, 0.1e-3
 """By how much deeper than it is the rim of a bore appears to lie, and the standard deviation of
@@ -174,7 +175,7 @@ def uncertain_pose(
 
 
 def _as_seen(calibration: PlaneCalibration, connector: Connector) -> PlaneCalibration:
-    """With the depth of what is seen as uncertain as its plane."""
+    """The calibration with a height that is as uncertain as the depth at which a bore is seen."""
     if connector.kind == "pins":
         return calibration
     sigma_m = float(np.hypot(calibration.sigma_height_m, _BORE_SIGMA_M))
@@ -228,7 +229,7 @@ def _expectation(
     marks: Marks | None,
     seen: MeasuredMarks | None,
 ) -> PlanarExpectation | None:
-    """By the marks where they are seen, otherwise by the trained place."""
+    """The expected place by the marks where they are seen, otherwise by the trained place."""
     if marks is not None and seen is not None:
         pose = seen.camera_T_marks.pose * marks.marks_T_connector
         within = (marks.within_m, marks.within_rad)

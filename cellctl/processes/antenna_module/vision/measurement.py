@@ -41,7 +41,7 @@ class MeasuredMarks:
     px: Array
     """Shape (n, 2)."""
     radius_px: float
-    """For the picture."""
+    """Radius, for the picture only."""
     scale: float
     """Size of the pattern against its drawing, left free as a check."""
 
@@ -65,7 +65,7 @@ class ConnectorMeasurement:
     camera_id: str
     contacts: tuple[MeasuredContact, ...]
     radius_px: float
-    """Of a good contact, for the picture."""
+    """Radius of a good contact, for the picture only."""
     camera_T_connector: UncertainPose
     scale: float
     chi2: float

@@ -20,15 +20,15 @@ from cellctl.processes.antenna_module.vision.contact_fit.circle_fit import Circl
 from cellctl.processes.antenna_module.vision.plane import MeasuringPlane
 
 _MOST = 0.42
-"""Of the light's first harmonic over its mean. A ring that is brighter by 60 % on one side has 0.40
-at most and moves rendered pins by less than a micrometre; a ring of which a third is lit has at
-least 0.49, and moves them by up to 30 µm."""
+"""Most of the light's first harmonic over its mean. A ring that is brighter by 60 % on one side has
+0.40 at most and moves rendered pins by less than a micrometre; a ring of which a third is lit has
+at least 0.49, and moves them by up to 30 µm."""
 _WIDEST = 1.14
-"""Of the rims' radius over the drawing's. Blur makes holes larger by up to 9 %; where the dark side
-of the funnel is taken for a part of the hole they are larger by 18 % and more."""
+"""Most of the rims' radius over the drawing's. Blur makes holes larger by up to 9 %; where the dark
+side of the funnel is taken for a part of the hole they are larger by 18 % and more."""
 _DIRECTIONS = 48
 _FLAT_TIP = 0.8
-"""Of the radius, where the tip of a pin without chamfer is looked at."""
+"""Share of the radius within which the tip of a pin without chamfer is looked at."""
 
 
 def require_light_from_all_sides(

@@ -47,7 +47,7 @@ class Pattern:
     """How far off its place a feature is still taken for this one."""
     bright: bool
     chamfer_m: float = 0.0
-    """Of the tip of a pin: the flat is smaller than the rim by this, and as much nearer."""
+    """Chamfer of the tip of a pin: the flat is smaller than the rim by this, and as much nearer."""
     length_m: float = 0.0
     """What stands out of the ground."""
 
@@ -73,7 +73,7 @@ class Feature:
 
     name: str
     circle: Circle | None
-    """None when no circle of this size is there."""
+    """The circle that was fitted; None when no circle of this size is there."""
     contrast: float
     """Grey levels inside less outside, positive as the feature should be."""
     clean: bool
@@ -276,7 +276,8 @@ def _features(
 
 
 def _with_common_light(fit: PlanarFit, sigma_m: float) -> PlanarFit:
-    """With what moves all features together, which the fit of one against another cannot see."""
+    """The fit with the error added that moves all features together, which the fit of one against
+    another cannot see."""
     common = np.diag([sigma_m**2, sigma_m**2, 0.0])
     return replace(fit, covariance=fit.covariance + common)
 

@@ -15,7 +15,8 @@ from cellctl.processes.antenna_module.vision.matching import rigid, rotation
 
 REJECT = 6.0
 _HUBER = 3.5
-"""In standard deviations of a point with two coordinates: one good contact in 500 is beyond."""
+"""Residual, in standard deviations of a point with two coordinates, beyond which a point weighs
+less: one good contact in 500."""
 _ROUNDS = 8
 _FEWEST = 3
 
@@ -27,14 +28,14 @@ class PlanarFit:
     yaw_rad: float
     shift_m: Array
     covariance: Array
-    """Of x, y (m) and yaw (rad) by the image alone, shape (3, 3); the point is the drawing's
-    origin."""
+    """Covariance of x, y (m) and yaw (rad) by the image alone, shape (3, 3); the point is the
+    drawing's origin."""
     residuals_m: Array
     """Measured less fitted, in the axes of the drawing, shape (n, 2); NaN where not measured."""
     used: NDArray[np.bool_]
     """Points that the fit rests on, shape (n,)."""
     scale: float
-    """Of the drawing, left free as a check."""
+    """Scale of the drawing, left free as a check."""
     scale_sigma: float
     chi2: float
     freedom: int

@@ -19,7 +19,7 @@ _TRIES = 3
 _LIFT_M = 1e-3
 
 Contacts = list[ClassifiedContact]
-"""In their order; a cycle keeps them for its record."""
+"""Contacts in their order in time; a cycle keeps them for its record."""
 
 
 async def meet_face(

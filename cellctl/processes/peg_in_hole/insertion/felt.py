@@ -17,7 +17,8 @@ _STAYS = 0.7
 _FOOT = 0.2
 _LINE_SAMPLES = 20
 _SEAT_ZONE_M, _WAY_M = 0.5e-3, 3e-3
-"""So far before its end a feed is slowed by the seat; so far back the way counts for friction."""
+"""How far before its end a feed is slowed by the seat, and how far back from its end the way counts
+for friction."""
 
 
 @dataclass(frozen=True, slots=True)

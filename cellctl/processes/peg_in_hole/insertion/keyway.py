@@ -14,15 +14,15 @@ from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 _HOLD_N = 5.0
 _FASTEST_RAD_S = radians(3.0)
 _SWEEP_RATIO = 1.5
-"""Of the uncertainty: its figure is an estimate itself."""
+"""How far the sweep goes, over the uncertainty of the turn: that figure is an estimate itself."""
 _BEGUN_M = 0.2e-3
 """A drop by which the keys are seen to have begun to enter."""
 _SETTLE_S = 1.0
 _THROUGH_RATIO = 0.5
-"""Of the depth of the keys, that the plug must go further than their ends."""
+"""How much further than the ends of the keys the plug must go, over the depth of the keys."""
 _NEAR_M = 0.5e-3
 _DAMPING = 1.5
-"""Of the admittance along z (force/contact/streamed/gains.py)."""
+"""Factor of the admittance's damping along z (force/contact/streamed/gains.py)."""
 
 
 async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeometry) -> None:
@@ -54,7 +54,7 @@ async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeomet
 
 
 def _sweep_speed_rad_s(task: SearchTask, keys: KeyGeometry) -> float:
-    """So slow that the plug drops visibly while the keys cross half of their window."""
+    """A speed so low that the plug drops visibly while the keys cross half of their window."""
     drop_m_s = _HOLD_N / (_DAMPING * task.cell.loop_n_s_m)
     return min(_FASTEST_RAD_S, keys.window_rad * drop_m_s / _BEGUN_M)
 
@@ -70,6 +70,6 @@ def _dropped_from(depth_m: float, task: SearchTask) -> Condition:
 
 
 def _on_keys(sample: ContactSample, task: SearchTask, keys: KeyGeometry) -> bool:
-    """At the depth of the keys, less what arm and contact yield."""
+    """Whether the tip is at the depth of the keys, less what arm and contact yield."""
     yields_m = -float(sample.force_n[2]) / task.cell.stiffness_n_m
     return abs(float(sample.task_position_tip_m[2]) - yields_m - keys.depth_m) < _NEAR_M

@@ -73,7 +73,7 @@ class Yaw(Recovery):
     name: ClassVar[str] = "yaw"
 
     async def apply(self, motions: ContactMotions, fit: FitGeometry, standing: Standing) -> None:
-        """To both sides at 50 % of the force; a keyed plug by its play only."""
+        """Turn to both sides at 50 % of the force; a keyed plug by its play only."""
         hold = np.array([0.0, 0.0, _HALVED * standing.axial_n])
         greatest = _YAW_RAD if fit.keys is None else min(_YAW_RAD, fit.keys.window_rad)
         for angle in (greatest, -greatest, 0.0):
@@ -98,6 +98,7 @@ class BackAndAgain(Recovery):
 
 
 IN_ORDER: tuple[Recovery, ...] = (GiveWay(), Wiggle(), Yaw(), BackAndAgain())
-"""For a peg with side force or moment."""
+"""What is tried, in this order, with a peg that feels a side force or a moment."""
 WHEN_STRAIGHT: tuple[Recovery, ...] = (BackAndAgain(),)
-"""For one that meets a resistance without them: only a second entry tells chip from closed hole."""
+"""What is tried with one that meets a resistance without them: only a second entry tells chip from
+closed hole."""

@@ -29,7 +29,7 @@ class Column:
 
     name: str
     factor: float
-    """To SI, and to frame A: negative where the file counts out of the hole."""
+    """Factor to SI units and to frame A: negative where the file counts out of the hole."""
 
 
 def columns_of(names: Iterable[str]) -> dict[str, Column]:

@@ -28,7 +28,8 @@ from cellctl.records.files.mcap_reading import RecordedMessage, read_mcap
 _MCAP_MAGIC = b"\x89MCAP"
 _FEWEST = 20
 _SLOWEST_S, _FASTEST_S = 0.5, 10e-6
-"""Between two samples. Beyond that the times are in another unit, or the curve is worthless."""
+"""Longest and shortest time between two samples. Beyond that the times are in another unit, or the
+curve is worthless."""
 
 Motion = tuple[int, MotionKind]
 

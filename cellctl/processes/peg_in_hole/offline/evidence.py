@@ -54,7 +54,8 @@ def _capture(parts: CurveParts, task: TaskOfCurve) -> LateralCapture | None:
 
 
 def _turns_that_resist(parts: CurveParts) -> int | None:
-    """Of two; None where it was not turned, or its moment was not recorded."""
+    """How many of the two turns met a resistance; None where it was not turned, or its moment was
+    not recorded."""
     if parts.before_turns is None or len(parts.turned) < 2:
         return None
     free_nm = float(parts.before_turns.moment_nm[2])

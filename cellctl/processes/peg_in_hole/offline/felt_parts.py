@@ -21,15 +21,16 @@ from cellctl.processes.peg_in_hole.verdict.lateral import (
 )
 
 _MEAN_S = 10e-3
-"""Over so long a force is averaged: ``force_sigma_n`` is that of ten samples at 1 kHz."""
+"""Time over which a force is averaged: ``force_sigma_n`` is that of ten samples at 1 kHz."""
 _DEEPEST_M = 0.1e-3
-"""So far above the greatest depth the force of the seat is looked for."""
+"""How far above the greatest depth the force of the seat is looked for."""
 _FEED_WAY_M = 3e-3
-"""So much of the feed the rise at the seat is judged with."""
+"""Length of the end of the feed by which the rise at the seat is judged."""
 _MOVED = 0.5
-"""Of what the arm yields under a push: it has moved by as much at least if it was pushed."""
+"""Least movement of an arm that was pushed, as a share of what it yields under the push."""
 _NEARLY = 0.9
-"""Of a push counts as one: a mean over 10 ms lags behind a force that rises to its end."""
+"""Share of a push that counts as the whole: a mean over 10 ms lags behind a force that rises to its
+end."""
 _LIFTED_M = 1e-3
 """Higher than this over where a peg stands without force, it is being drawn out."""
 

@@ -20,7 +20,7 @@ Samples = tuple[ContactSample, ...]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CurveParts:
-    """Of one curve; what is not in it is None or empty."""
+    """The parts of one curve; a part that is not in it is None or empty."""
 
     feed: Samples
     """The last one, to the seat or to where the peg stands."""

@@ -51,7 +51,7 @@ class SearchChoice:
 
     order: tuple[SearchName, ...]
     estimates: Mapping[SearchName, Derived]
-    """Of all strategies that the geometry allows, in seconds."""
+    """Estimated times of all strategies that the geometry allows, in seconds."""
     parameters: SearchParameters
 
     def to_record(self) -> dict[str, Any]:

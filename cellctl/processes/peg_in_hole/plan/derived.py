@@ -14,7 +14,7 @@ class Derived:
     unit: str
     formula: str
     inputs: Mapping[str, float]
-    """By the names that stand in the formula, in SI units."""
+    """What it was computed from, by the names that stand in the formula, in SI units."""
 
     def __str__(self) -> str:
         inputs = ", ".join(f"{name} {value:.4g}" for name, value in self.inputs.items())

@@ -14,11 +14,12 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 DETECTION_S = 0.03
 """A lost or a new contact is believed after so long."""
 _TOUCH_N = 8.0
-"""By so much a contact may grow, and with so much a search presses, where the recipe allows it."""
+"""Force by which a contact may grow, and with which a search presses, where the recipe allows
+it."""
 _FASTEST_TOUCH_M_S = 3e-3
 _FASTEST_SLIDE_M_S = 5e-3
 _SIDE_N = 5.0
-"""With so much the peg is held against the outer face of a plug (section 3.6)."""
+"""Force with which the peg is held against the outer face of a plug (section 3.6)."""
 STANDS_M = 0.05e-3
 """A peg that is carried and goes no deeper than this stands."""
 _LONGER, _SETTLE_S = 1.5, 0.5

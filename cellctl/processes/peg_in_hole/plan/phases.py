@@ -11,7 +11,7 @@ from cellctl.processes.peg_in_hole.plan.derived import Derived
 from cellctl.processes.peg_in_hole.plan.task import ForceLimits, SearchTask
 
 _NOISE = 1.25
-"""Above what a motion may reach: noise of the sensor, inertia of the tool, friction."""
+"""Factor on what a motion may reach, for noise of the sensor, inertia of the tool and friction."""
 
 
 class CyclePhase(StrEnum):
@@ -24,7 +24,7 @@ class CyclePhase(StrEnum):
 
 
 def guard_force(task: SearchTask, phase: CyclePhase) -> Derived:
-    """At which force (N) about the tip the guard stops the arm in a phase."""
+    """Force (N) about the tip at which the guard stops the arm in a phase."""
     limits = task.limits
     value, formula = _FORCES[phase](limits)
     return Derived(

@@ -78,9 +78,9 @@ class _TipPlaces:
         self._attitude = tip.rotation
         uncertain_m = recipe.base_T_hole.height_uncertainty_mm * MM
         self.clear_m = CLEAR_M + uncertain_m
-        """Over the believed face, where the tip may go sideways."""
+        """Height over the believed face at which the tip may go sideways."""
         self.face_m = recipe.base_T_hole.datum_depth_mm * MM + uncertain_m
-        """So deep below the believed face a touch may end."""
+        """Depth below the believed face down to which a touch may go."""
         self.seat_m = recipe.fit.depth_mm * MM + uncertain_m
         self._lift_m = CLEAR_OF_FACE_M + uncertain_m
 

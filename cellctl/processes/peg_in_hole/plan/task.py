@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 _MM = 1e-3
 _CHAMFER_MARGIN_M = 0.1 * _MM
-"""Of the width of the chamfers that does not count: edges are not sharp."""
+"""Part of the width of the chamfers that does not count: edges are not sharp."""
 _ENTRY_MARGIN_M = 0.3 * _MM
 _SLOW_LOOP_N_S_M = 5e3
 
@@ -17,7 +17,7 @@ class KeyGeometry:
     """Keys that let a plug in at one angle about its axis only."""
 
     depth_m: float
-    """Of the tip, where the keys meet the ends of their keyways."""
+    """Depth of the tip at which the keys meet the ends of their keyways."""
     window_rad: float
     """Half width of the angles that enter, and the play inside."""
     uncertainty_rad: float
@@ -37,9 +37,9 @@ class FitGeometry:
     depth_m: float
     """From the face to the seat."""
     outer_radius_m: float | None = None
-    """Of the raised plug that has the hole; None for a hole in a plate."""
+    """Radius of the raised plug that has the hole; None for a hole in a plate."""
     keys: KeyGeometry | None = None
-    """None for a round part."""
+    """The keys; None for a round part."""
 
     @property
     def bore_radius_m(self) -> float:
@@ -48,7 +48,7 @@ class FitGeometry:
 
     @property
     def rim_radius_m(self) -> float:
-        """Of the bottom circle of the peg."""
+        """Radius of the bottom circle of the peg."""
         return self.peg_radius_m - self.peg_chamfer_m
 
     @property
@@ -66,7 +66,7 @@ class FitGeometry:
 
     @property
     def entry_depth_m(self) -> float:
-        """Below this depth the peg is between the walls."""
+        """Depth below which the peg is between the walls."""
         return self.hole_chamfer_m + self.peg_chamfer_m + _ENTRY_MARGIN_M
 
     @property
@@ -80,16 +80,16 @@ class CellFigures:
     """What decides how fast and how well a cell can feel."""
 
     stiffness_n_m: float
-    """Of arm and contact in series, along the axis of the hole."""
+    """Stiffness of arm and contact in series, along the axis of the hole."""
     dead_time_s: float
     """From a force at the tip to a motion of the tip in answer."""
     uncertainty_m: float
     """Radius that holds 99 % of the errors of the coarse position."""
     repeatability_m: float
     height_sigma_m: float
-    """Of one reading of the height in contact, averaged as it is used."""
+    """Standard deviation of one reading of the height in contact, averaged as it is used."""
     force_sigma_n: float
-    """Of the mean of ten samples of one component."""
+    """Standard deviation of the mean of ten samples of one component of the force."""
     friction: float
 
     @property

@@ -20,7 +20,7 @@ from cellctl.runtime.process import CellServices
 from cellctl.runtime.steps import StepSpec
 
 _HIGH_M = 3e-3
-"""Over the face: the chirp in free air swings by a third of it."""
+"""Height over the face: the chirp in free air swings by a third of it."""
 _FREE_M = 1e-3
 _TRAVEL_M = _HIGH_M + 2e-3
 _FREE_M_S = 10e-3

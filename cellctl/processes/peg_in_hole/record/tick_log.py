@@ -29,7 +29,7 @@ class TickLog(TickObserver):
 
     rows: list[tuple[float, ...]] = field(default_factory=list)
     motions: list[tuple[int, MotionKind]] = field(default_factory=list)
-    """Of each row."""
+    """Number and kind of the motion of each row."""
     begun_s: float | None = None
     _sent_m: Array | None = None
 
@@ -80,9 +80,9 @@ class ReadTicks:
     """A table of ticks; arrays of shape (n,)."""
 
     values: Mapping[str, Array]
-    """By the names of ``COLUMNS``, and of ``LOOP_COLUMNS`` where the file has them."""
+    """Columns by the names of ``COLUMNS``, and of ``LOOP_COLUMNS`` where the file has them."""
     kinds: tuple[str, ...]
-    """Of the motions, for each tick; empty where the file does not say."""
+    """Kind of the motion for each tick; empty where the file does not say."""
 
 
 def read_ticks(text: str) -> ReadTicks:

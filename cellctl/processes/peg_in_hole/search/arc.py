@@ -29,7 +29,7 @@ _RESIDUAL_M = 0.1e-3
 
 
 class ArcSearch(SearchStrategy):
-    """For tight plugs with an outer face, and where the bore may not be touched."""
+    """Search for tight plugs with an outer face, and where the bore may not be touched."""
 
     name: ClassVar[SearchName] = SearchName.ARC
 

@@ -20,7 +20,7 @@ _LOST_RATIO = 0.3
 
 
 def depth_m(sample: ContactSample) -> float:
-    """Of the tip below the face."""
+    """Depth of the tip below the face."""
     return float(sample.task_position_tip_m[2])
 
 

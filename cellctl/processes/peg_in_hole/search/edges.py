@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 SLIDE_M_S = 5e-3
 _INSIDE_M = 0.5e-3
 _BEHIND_M = 0.3e-3
-"""So far behind a flank the peg is put down again; scratches and burrs are narrower."""
+"""How far behind a flank the peg is put down again; scratches and burrs are narrower."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -31,21 +31,23 @@ _SLIP_M, _WAY_RATIO = 0.5e-3, 2.0
 """A touch that goes on in contact for so long, and for so many times the way in which the arm's
 stiffness makes the force of a touch, makes the part slip."""
 _FELT_N, _FELT_SIGMAS = 1.0, 5.0
-"""Of the axial force, that a touch in the air does not show."""
+"""Least axial force of a touch, in newtons and in standard deviations: in the air none is so
+great."""
 _MOST_RESIDUAL_M = 0.1e-3
 _MOST_TILT_RAD = radians(3)
 _FREE_M_S = 20e-3
 CLEAR_M = 1e-3
 """The tip is left so high over the face when it was touched."""
 _CLEAR_M = 3e-3
-"""Over a plug that stands proud of the touched panel."""
+"""Height over a plug that stands proud of the touched panel."""
 _UPRIGHT = np.zeros(3)
 _DOWN = np.array([0.0, 0.0, 1.0])
 ANGLES_RAD = np.radians([0.0, 60.0, 120.0, 240.0])
-"""In the order of the touches: three for the plane, and one between two of them to prove it."""
+"""Directions of the touches in their order: three for the plane, and one between two of them to
+prove it."""
 _OF_PLANE, _PROOF = [0, 2, 3], 1
 _STEP_RAD = radians(30)
-"""Of the way round a plug: chords stay near the circle."""
+"""Angle of one step of the way round a plug: chords so short stay near the circle."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,20 +55,20 @@ class TouchedFace:
     """A plane in frame A as it was before it is turned to the face."""
 
     depth_m: float
-    """At the search centre."""
+    """Depth of the face at the search centre."""
     slope: Array
     """Depth per way along x and y, shape (2,)."""
     residual_m: float
-    """Of the fourth touch, away from the plane of the others."""
+    """Distance of the fourth touch from the plane of the others."""
     slope_sigma: float
     """Standard deviation of each component of ``slope``."""
     yields_m: float = 0.0
-    """By so much arm and face had yielded to the touches: a tip that the face does not carry yet is
-    so much less deep."""
+    """How far arm and face had yielded to the touches: a tip that the face does not carry yet is so
+    much less deep."""
 
     @property
     def tilt_rad(self) -> float:
-        """Between the normal of the face and z of frame A."""
+        """Angle between the normal of the face and z of frame A."""
         return float(np.arctan(np.hypot(*self.slope)))
 
 
@@ -75,10 +77,10 @@ class FacePlan:
     """Where the face is touched."""
 
     radius_m: float
-    """Of the circle of touches round the search centre."""
+    """Radius of the circle of touches round the search centre."""
     height_uncertainty_m: float
     datum_depth_m: float = 0.0
-    """So much deeper than the face lies the plane that is touched: the panel round a plug."""
+    """How much deeper than the face the plane lies that is touched: the panel round a plug."""
 
 
 async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) -> TouchedFace:

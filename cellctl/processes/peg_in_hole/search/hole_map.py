@@ -10,7 +10,8 @@ from scipy.ndimage import distance_transform_edt
 Array = NDArray[np.float64]
 
 _LEFT_AFTER_TOUCH = 0.02
-"""Not 0: the arm was not exactly where it believed to be."""
+"""Share of the probability that stays where a touch found no hole. Not 0: the arm was not exactly
+where it believed to be."""
 _EXHAUSTED = 0.01
 _SIGMAS_OF_P99 = 3.035
 """Radius that holds 99 % of a round Gaussian, in standard deviations of one axis."""

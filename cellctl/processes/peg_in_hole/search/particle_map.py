@@ -28,7 +28,7 @@ _PLACES = 15
 
 
 class ParticleMap(SearchStrategy):
-    """For tight holes in a plate, where a valley cannot be followed."""
+    """Search for tight holes in a plate, where a valley cannot be followed."""
 
     name: ClassVar[SearchName] = SearchName.PARTICLE_MAP
 

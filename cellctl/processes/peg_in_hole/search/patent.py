@@ -24,7 +24,8 @@ Array = NDArray[np.float64]
 _WRONG_SIDE_M = 2e-3
 """A chord that ends so soon went out of the face, not across it."""
 _LEAST_CHORD, _MOST_CHORD = 0.45, 0.9
-"""Of the diameter: with other chords an error of a point moves the centre several times as far."""
+"""Least and greatest chord over the diameter: with other chords an error of a point moves the
+centre several times as far."""
 
 
 class _EnteredOnTheWay(Exception):
@@ -62,7 +63,7 @@ class PatentMidpoint(SearchStrategy):
 
 
 class PatentCircumcentre(SearchStrategy):
-    """With the vertex at 45 degrees to the centre, and the circle through three points."""
+    """Search by the circle through three points, with the vertex at 45 degrees to the centre."""
 
     name: ClassVar[SearchName] = SearchName.PATENT_CIRCUMCENTRE
 

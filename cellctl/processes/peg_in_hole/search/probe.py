@@ -33,8 +33,8 @@ _DIP_M = 0.1e-3
 _LET_GO = 3
 """A peg that goes deeper each time is let go so often."""
 TOUCH_SHARE = 0.5
-"""Of the press, at which a touch ends. Until the arm has answered the force may grow by a whole
-press, and stays within the one and a half presses that a search may make."""
+"""Share of the press at which a touch ends. Until the arm has answered the force may grow by a
+whole press, and stays within the one and a half presses that a search may make."""
 _LOCAL_RADIUS_M = 0.25e-3
 
 
@@ -53,7 +53,7 @@ class Felt(StrEnum):
     FACE = "face"
     DIP = "dip"
     EDGE = "edge"
-    """Of the outer face, of a valley, or of the hole: the peg stands below the face."""
+    """Edge of the outer face, of a valley, or of the hole: the peg stands below the face."""
     WALL = "wall"
     ENTRY = "entry"
 
@@ -158,7 +158,8 @@ class TouchProbe:
         return entered
 
     def _on_edge(self, sample: ContactSample, met: Met) -> bool:
-        """By its depth, or by a force that no face makes: the height of a face is not that sure."""
+        """Judged by its depth, or by a force that no face makes: the height of a face is not that
+        sure."""
         across = class_by_force(sample.force_n, self.task.cell) is not ContactClass.END_FACE
         return met is Met.WALL or depth_m(sample) > _DIP_M or across
 

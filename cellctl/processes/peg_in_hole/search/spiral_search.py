@@ -12,12 +12,12 @@ _PASSES = 4
 
 
 class SpiralSearch(SearchStrategy):
-    """For holes with chamfers: simple, and fast where the catch radius is wide."""
+    """Search for holes with chamfers: simple, and fast where the catch radius is wide."""
 
     name: ClassVar[SearchName] = SearchName.SPIRAL
 
     async def find(self, probe: TouchProbe) -> bool:
-        """Up to four passes, since the errors of the path differ from pass to pass."""
+        """Spiral up to four times, since the errors of the path differ from pass to pass."""
         centre_m = np.zeros(2)
         for _ in range(_PASSES):
             await probe.touch_down(centre_m, UPRIGHT)

@@ -27,7 +27,7 @@ _BACK_M = (0.0, 0.4e-3, 0.12e-3)
 
 
 class TiltedValley(SearchStrategy):
-    """For tight holes in a plate: what it feels does not shrink with the clearance."""
+    """Search for tight holes in a plate: what it feels does not shrink with the clearance."""
 
     name: ClassVar[SearchName] = SearchName.TILTED_VALLEY
 

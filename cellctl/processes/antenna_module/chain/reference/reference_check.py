@@ -41,7 +41,7 @@ class ReferenceReading:
     """Standard deviation of each of them, per axis."""
 
     def stacked(self) -> Array:
-        """In the order of the table, shape (4, 2)."""
+        """The numbers in the order of the table, shape (4, 2)."""
         return np.stack(
             [
                 self.axis_in_camera_2,
@@ -61,7 +61,8 @@ _ROWS: Mapping[type[ReferenceMoved], Array] = {
     ArmMoved: np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]]),
 }
 _MAX_CHI2 = 22.5
-"""Of six numbers, the most that a single device leaves unexplained: exceeded once in 1000."""
+"""The most chi square, of six numbers, that a single device may leave unexplained: exceeded once in
+1000."""
 MOVED_M = 10e-6
 """A place that is farther from the taught one than this has moved. Four times the noise of a check
 with eight angles, and half of what must be found."""
@@ -71,11 +72,11 @@ in two of 1000 checks with four looks."""
 _MOST_LOOKS = 4
 """A check never takes more looks than this many times those that it began with."""
 _CLEAR = 2.0
-"""So many times the limit are more than any further look would change."""
+"""A place that is off by so many times the limit has moved: no further look would change that."""
 _SIGMAS = 4.5
 """A false alarm costs a calibration. Where nothing has moved, 2 of 2500 drawn checks exceed it."""
 _DRIFTS = 3.0
-"""So many standard deviations of what warming does to the arm are no fault: plans include them."""
+"""What warming does to the arm is no fault within so many standard deviations: plans include it."""
 
 
 def furthest_m(taught: ReferenceReading, now: ReferenceReading) -> float:

@@ -32,7 +32,7 @@ class Circle:
     centre_m: Array
     radius_m: float
     covariance_m2: Array
-    """Of the centre, shape (2, 2)."""
+    """Covariance of the centre, shape (2, 2)."""
     support: float
     """Share of all directions with an edge on the circle."""
     scatter_m: float

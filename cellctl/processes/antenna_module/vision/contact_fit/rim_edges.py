@@ -23,10 +23,10 @@ _MARGIN_PX = 4
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RimEdges:
-    """At most one edge in each direction."""
+    """Edge points of a rim, at most one in each direction."""
 
     points_m: Array
-    """In the plane, shape (n, 2)."""
+    """Points in the plane, shape (n, 2)."""
     direction: NDArray[np.intp]
     slope_grey: Array
     """Grey levels in a pixel, positive, shape (n,)."""

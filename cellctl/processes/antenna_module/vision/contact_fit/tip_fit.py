@@ -23,7 +23,8 @@ _REACH = 1.55
 """Half side of the pixels that are used, of the radius: not as far as the next contact."""
 _ROUNDS = 8
 _HUBER = 2.0
-"""In standard deviations of a pixel; beyond it one weighs less, as those of dirt do."""
+"""Residual, in standard deviations of a pixel, beyond which a pixel weighs less, as those of dirt
+do."""
 _BLUR_PX = 1.0
 _BLUR_SIGMA = 0.7
 """Blur that is expected, and its standard deviation, px."""
@@ -48,7 +49,7 @@ class _Pixels:
     y: Array
     grey: Array
     flat_radius: float
-    """Of the tip's radius."""
+    """Radius of the flat over that of the tip."""
     flat_shift: Array
     """The flat is nearer to the camera than the rim, and so appears shifted against it, px."""
     root_shift: Array
