@@ -30,7 +30,7 @@ class RobotReports:
     selection: PendantSelection = field(default_factory=PendantSelection)
 
     def as_json(self) -> dict[str, dict[str, Any]]:
-        """By part and name, in ms, mm and degrees."""
+        """The reports by part and name, in ms, mm and degrees."""
         return {
             "link": dict(self.facts),
             "reports": {

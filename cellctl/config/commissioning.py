@@ -27,7 +27,7 @@ class Examination:
     remarks: tuple[ConfigIssue, ...]
     """What may be meant as it stands; none of a file that has errors."""
     cell: CellConfig | None
-    """None where its keys cannot be read."""
+    """The cell file; None where its keys cannot be read."""
 
 
 def examine_before_commissioning(path: Path) -> Examination:

@@ -35,5 +35,5 @@ def doubtful(subject: str, found: str, remedy: str) -> Finding:
 
 
 def bad(subject: str, found: str, remedy: str) -> Finding:
-    """To be done before the service can run."""
+    """Something that has to be mended before the service can run."""
     return Finding(subject, Health.BAD, found, remedy)

@@ -71,7 +71,7 @@ def _processors(pc: Pc, cell: CellConfig | None) -> Iterator[Finding]:
 
 
 def _numbers(written: str) -> set[int]:
-    """Of a list such as ``0-3,6`` (Documentation/admin-guide/cputopology)."""
+    """The numbers of a list such as ``0-3,6`` (Documentation/admin-guide/cputopology)."""
     found: set[int] = set()
     for part in filter(None, written.split(",")):
         first, _, last = part.partition("-")

@@ -70,7 +70,7 @@ def _kind(pc: Pc, folder: Path) -> Iterator[Finding]:
 
 
 def _file_system(mounts: str, folder: Path) -> str:
-    """Of the innermost mount that holds the folder (man 5 proc: device, place, kind, …)."""
+    """Kind of the innermost mount that holds the folder (man 5 proc: device, place, kind, …)."""
     found, depth = "", -1
     for line in mounts.splitlines():
         _, place, kind, *_ = line.split()

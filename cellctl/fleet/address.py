@@ -9,7 +9,7 @@ from cellctl.config.cell import checked_url
 from cellctl.errors.records import FleetNotNamed
 
 PASSWORD = "CELLCTL_FLEET_PASSWORD"  # the name of a variable
-"""Of the environment; without it and without a file libpq looks where it always does."""
+"""Variable of the environment; without it and without a file libpq looks where it always does."""
 
 
 def address(url: str, password_file: str = "") -> URL:

@@ -82,7 +82,7 @@ class Batch:
     entries: Sequence[Values]
     changes: Sequence[Change]
     length: int
-    """Of the whole ledger of the cell."""
+    """Length of the whole ledger of the cell."""
 
 
 class CellRecords:

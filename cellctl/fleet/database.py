@@ -24,9 +24,9 @@ class FleetTimeLimits:
 
     connect_s: int = 10
     statement_s: float = 60.0
-    """For one statement, told to the server, which then ends it."""
+    """Longest time of one statement, told to the server, which then ends it."""
     silence_s: float = 20.0
-    """For a sign of life from the other end of the connection, told to the kernel."""
+    """Longest wait for a sign of life from the other end of the connection, told to the kernel."""
 
 
 TIME_LIMITS = FleetTimeLimits()

@@ -21,7 +21,7 @@ from cellctl.records.database.schema_version import SCHEMA_VERSION
 from cellctl.records.seals import LedgerHead
 
 ENTRIES = 200
-"""Of the ledger in one transaction: some hundred kilobytes, or one run with its figures."""
+"""Entries of the ledger in one transaction: some hundred kilobytes, or one run with its figures."""
 _ONE = 1
 
 

@@ -17,9 +17,9 @@ class ForwarderPace:
     """How often the store and the server are asked."""
 
     look_s: float = 2.0
-    """Between two looks for new entries."""
+    """Pause between two looks for new entries."""
     retry_s: float = 2.0
-    """After the first failure; twice as long after each further one."""
+    """Pause after the first failure; twice as long after each further one."""
     retry_most_s: float = 60.0
 
 

@@ -34,9 +34,9 @@ class FleetCell:
     received: datetime | None
     """When that was, by the server's clock; None before the first."""
     age_s: float | None
-    """Since then, by the server's clock."""
+    """Time since then, by the server's clock."""
     clock_ahead_s: float | None
-    """By how much the cell's clock was ahead of the server's then, travel time included."""
+    """How much the cell's clock was ahead of the server's then, travel time included."""
     software: str
 
 

@@ -40,9 +40,9 @@ class DeliveryRow(PlaceBase):
     length: Mapped[int] = mapped_column(BigInteger)
     """Entries of the cell's own ledger at that time: more than are here while it catches up."""
     sent: Mapped[datetime] = mapped_column(DateTime(timezone=True))
-    """By the clock of the cell."""
+    """Time by the clock of the cell."""
     received: Mapped[datetime] = mapped_column(DateTime(timezone=True))
-    """By the clock of the server."""
+    """Time by the clock of the server."""
     software: Mapped[str]
 
 

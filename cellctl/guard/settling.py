@@ -19,4 +19,4 @@ class Settling:
 
 
 USUAL = Settling()
-"""For the loads that docs/decisions/0005 was measured with, up to 200 kg."""
+"""Settling of the loads that docs/decisions/0005 was measured with, up to 200 kg."""

@@ -26,7 +26,7 @@ class Visitor:
     panel: str
     """Name of the panel; empty for a page elsewhere."""
     key: str
-    """Of the session, the token or the address: what limits count by."""
+    """Key of the session, the token or the address: what limits count by."""
     session: Session | None = None
 
 
@@ -111,4 +111,5 @@ def visitor(request: Request) -> Visitor:
 
 Asked = Annotated[Visitor, Depends(visitor)]
 OWN_PAGE = [Depends(require_own_page)]
-"""For routes that change something. As a dependency it comes before the body is judged."""
+"""Dependency of routes that change something. As a dependency it is asked before the body is
+judged."""

@@ -8,8 +8,8 @@ from cellctl.hmi.problems import Problem
 BEAT_S = 1.0
 STREAMS = 60
 STREAMS_EACH = 4
-"""Of one session: browsers open no more than six connections to one address, and the page needs
-some besides."""
+"""Most streams of one session: browsers open no more than six connections to one address, and the
+page needs some besides."""
 
 
 class Streams:
@@ -21,7 +21,7 @@ class Streams:
 
     @property
     def count(self) -> int:
-        """Of all that are open."""
+        """Number of all streams that are open."""
         return sum(self._open.values())
 
     def admit(self, key: str) -> None:

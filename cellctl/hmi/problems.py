@@ -33,7 +33,7 @@ class Problem(Exception):
         self.headers: dict[str, str] = {}
 
     def later(self, seconds: float) -> "Problem":
-        """With the time after which it is worth trying again."""
+        """The problem with the time after which it is worth trying again."""
         self.headers["Retry-After"] = str(max(1, round(seconds)))
         return self
 

@@ -8,7 +8,7 @@ KEYS = 1000
 
 
 class RateLimit:
-    """At most ``count`` in any ``period_s`` for each key."""
+    """Allows at most ``count`` in any ``period_s`` for each key."""
 
     def __init__(self, count: int, period_s: float, *, clock: Monotonic = now_s) -> None:
         self._count = count

@@ -18,7 +18,8 @@ _RANGE_EFFICIENCY = 0.62
 _LEAST = 10
 """Fewer runs say nothing of a spread: their interval would span a factor of three."""
 _ONE_SIDE, _RISING = 8, 6
-"""So many values in a row on one side of the mean, or rising or falling, are a signal."""
+"""Length of a row of values on one side of the mean, and of one that rises or falls, that is a
+signal."""
 CONFIDENCE = 0.95
 
 

@@ -82,8 +82,8 @@ class CalibrationBoard:
         return np.asarray((places - middle) * self.square_m)
 
     def turned_ids(self, quarters: int) -> Ids:
-        """For each corner, the id of the one that stands in its place after so many quarter turns,
-        for boards of which no image shows the turn."""
+        """Id of the corner that stands in the place of each one after so many quarter turns, for
+        boards of which no image shows the turn."""
         flat = self.corners_m[:, :2]
         turned = flat @ np.linalg.matrix_power(np.array([[0.0, 1.0], [-1.0, 0.0]]), quarters)
         distances = np.linalg.norm(turned[:, None] - flat[None], axis=2)

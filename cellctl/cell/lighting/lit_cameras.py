@@ -31,7 +31,7 @@ class LitDevice(Device):
         return self._device.incidents()
 
     async def serial_number(self) -> str:
-        """That of the device behind it."""
+        """Serial number of the device behind it."""
         return await self._device.serial_number()
 
     async def set_exposure(self, exposure_s: float) -> float:

@@ -52,7 +52,7 @@ class PatientImager(PatientDevice[Imager], Generic[Imager]):
     """What camera and head share."""
 
     async def serial_number(self) -> str:
-        """That of the device behind it."""
+        """Serial number of the device behind it."""
         return await self._answer(self._device.serial_number())
 
     async def set_exposure(self, exposure_s: float) -> float:
@@ -80,7 +80,7 @@ class PatientTracker(PatientDevice[TargetTracker], TargetTracker):
     """A large-field head."""
 
     async def serial_number(self) -> str:
-        """That of the tracker behind it."""
+        """Serial number of the tracker behind it."""
         return await self._answer(self._device.serial_number())
 
     async def measure(self, frames: int = 1) -> tuple[Target, ...]:
@@ -92,7 +92,7 @@ class PatientGripper(PatientDevice[Gripper], Gripper):
     """A gripper; a call that is left does not stop its jaws."""
 
     async def state(self) -> GripperState:
-        """That of the gripper behind it."""
+        """State of the gripper behind it."""
         return await self._answer(self._device.state())
 
     async def open(self) -> GripperState:

@@ -37,7 +37,7 @@ class RobotLayer(Robot):
         return self._robot.incidents()
 
     def state(self, max_age_s: float = 0.25) -> RobotState:
-        """That of the robot behind it."""
+        """State of the robot behind it."""
         return self._robot.state(max_age_s)
 
     def link_facts(self) -> dict[str, str]:
@@ -49,7 +49,7 @@ class RobotLayer(Robot):
         return self._robot.round_trips_s()
 
     async def selection(self) -> PendantSelection:
-        """That of the robot behind it."""
+        """What is selected at the pendant of the robot behind it."""
         return await self._robot.selection()
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
@@ -85,7 +85,7 @@ class StreamingRobotLayer(RobotLayer, StreamingRobot):
         self._streaming = robot
 
     def stream_offer(self) -> StreamOffer:
-        """That of the robot behind it."""
+        """What the robot behind it offers."""
         return self._streaming.stream_offer()
 
     def stream(self, limits: StreamLimits) -> AbstractAsyncContextManager[PoseStream]:

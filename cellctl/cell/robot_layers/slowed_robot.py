@@ -35,7 +35,7 @@ class SlowedRobot(RobotLayer):
         self._speeds, self._pace = speeds, pace
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
-        """At most at the share of rated joint speed that the cell file states."""
+        """Move at most at the share of rated joint speed that the cell file states."""
         if self._pace.in_maintenance():
             speed_ratio = min(speed_ratio, self._speeds.speed_percent / 100.0)
         return await super().move_joint(joints_rad, speed_ratio=speed_ratio)
@@ -43,13 +43,13 @@ class SlowedRobot(RobotLayer):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """At most at the path speed that the cell file states."""
+        """Move at most at the path speed that the cell file states."""
         return await super().move_linear(
             base_T_flange, speed_m_s=self._held(speed_m_s), acceleration_m_s2=acceleration_m_s2
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        """At most at the path speed that the cell file states."""
+        """Move at most at the path speed that the cell file states."""
         return await super().step(base_T_flange, speed_m_s=self._held(speed_m_s))
 
     def _held(self, speed_m_s: float) -> float:

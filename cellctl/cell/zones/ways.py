@@ -53,7 +53,8 @@ class FlangeWay:
         return share.box.grown(self.reach_m).holds(self.points_m[-1])
 
     def leads_out(self, share: Share) -> bool:
-        """By the points, between which the way is straight; never one that may leave its lines."""
+        """Judged by its points, between which the way is straight; False for one that may leave its
+        lines."""
         if share.way_out is None or self.reach_m > 0.0 or not share.box.holds(self.points_m[0]):
             return False
         axis, upper = share.way_out

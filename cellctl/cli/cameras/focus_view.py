@@ -21,7 +21,7 @@ class SideView:
     exposure_s: float | None
     gain_db: float | None
     board_corners: int | None
-    """Of the board that was asked for; 0 where it was not found, None without one."""
+    """Corners of the board that was asked for; 0 where it was not found, None without one."""
     holes: int | None
     """Dark round features of the size that was asked for, None without one."""
 
@@ -34,7 +34,8 @@ class FocusView:
     took_s: float
     sides: tuple[SideView, ...]
     overlap_share: float | None
-    """Of a head: share of the left view that the right one sees too; None where it is not seen."""
+    """Share of the left view that the right camera of a head sees too; None where it is not
+    seen."""
 
 
 def looked_at(

@@ -21,7 +21,7 @@ from cellctl.interfaces import Robot, RobotState
 
 _STILL_S = 0.5
 _STILL_DEG = 0.01
-"""Between two reports of an arm that stands; brakes and control move it less."""
+"""Greatest change between two reports of an arm that stands; brakes and control move it less."""
 _FRESH_S = 1.0
 
 

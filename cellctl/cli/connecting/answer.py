@@ -43,7 +43,7 @@ class Answer:
         return (*silence, *(OtherDevice(f"{self.path}: {text}") for text in self.differs))
 
     def as_json(self) -> dict[str, Any]:
-        """For programs."""
+        """The answer in a form for programs."""
         return {
             "path": self.path,
             "driver": self.driver,

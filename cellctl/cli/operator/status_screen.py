@@ -58,7 +58,8 @@ def screen(report: StatusReport, now: datetime) -> RenderableType:
 
 
 def last_seen(report: StatusReport, seen: datetime, away: CellError) -> RenderableType:
-    """In place of the screen while the daemon does not answer; nothing in it is of now."""
+    """What is shown in place of the screen while the daemon does not answer; nothing in it is of
+    now."""
     text = Text(f"{away}\n", style="bold red")
     text.append(f"remedy: {away.remedy}\n", style="default")
     last = f"{report.state.capitalize()}, mode {report.mode.capitalize()}, {_step(report)}"

@@ -13,10 +13,10 @@ from cellctl.spelling import nearest
 
 @dataclass(frozen=True, slots=True)
 class _Use:
-    """Of an output by something in the cell file."""
+    """The use of an output by something in the cell file."""
 
     key: str
-    """Of the table that names device and output."""
+    """Key of the table that names device and output."""
     device: str
     output: str
 

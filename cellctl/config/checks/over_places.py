@@ -14,7 +14,7 @@ from cellctl.geometry.pose import MM, Array
 BESIDE_MM, TURNED_DEG = 50.0, 10.0
 """A pose is taught by eye over a place that a drawing gives: nearer than this it is the same."""
 HIGHEST_MM = 300.0
-"""Over a place; from higher up nobody teaches an approach."""
+"""Greatest height over a place; from higher up nobody teaches an approach."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -25,7 +25,7 @@ class Over:
     pose: str
     flange_T_tool: RigidTransform
     base_T_tool: RigidTransform
-    """Of the tool at the place itself; its z axis leads to it."""
+    """Pose of the tool at the place itself; its z axis leads to it."""
     written: tuple[WrittenValue, ...]
     """The values that the place and the tool follow from."""
     any_turn: bool = False

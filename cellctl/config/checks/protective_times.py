@@ -14,8 +14,8 @@ from cellctl.config.driver_settings import checked_settings
 from cellctl.config.issue import ConfigIssue
 
 MOST_WAY_MM = 150.0
-"""That an arm may go on by itself: what people leave free between an arm that passes and a fixture.
-"""
+"""Longest way that an arm may go on by itself: what people leave free between an arm that passes
+and a fixture."""
 MOST_WAY_SIMULATED_MM = 600.0
 
 
@@ -100,12 +100,12 @@ def protective_time_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIs
 
 
 def most_way_mm(cell: CellConfig) -> float:
-    """That an arm of this cell may go on by itself."""
+    """Longest way that an arm of this cell may go on by itself."""
     return MOST_WAY_SIMULATED_MM if cell.simulated else MOST_WAY_MM
 
 
 def times_alone_s(cell: CellConfig, robot: str) -> dict[str, float]:
-    """For how long an arm goes on by itself, by the key and value that say so."""
+    """Times for which an arm goes on by itself, by the key and value that say so."""
     settings = checked_settings(GROUPS["robots"], cell.robots[robot]).model_dump()
     return {
         f"{key} = {value:g}": float(value) * _unit(key)[0]

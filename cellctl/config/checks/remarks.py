@@ -14,10 +14,10 @@ from cellctl.config.checks.hosts import is_address
 from cellctl.config.issue import ConfigIssue
 
 _PREFIX = 24
-"""Of the usual network of a machine."""
+"""Length of the prefix of the usual network of a machine."""
 _PAIRS = (("open_valve", "close_valve"), ("opened_sensor", "closed_sensor"))
 _CHANNELS = 8
-"""Of one terminal of a coupler."""
+"""Channels of one terminal of a coupler."""
 _COUPLERS = (plugins.GRIPPER, plugins.DIGITAL_IO)
 
 

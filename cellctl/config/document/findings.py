@@ -99,7 +99,7 @@ def _words(item: ErrorDetails, node: Mapping[str, Any]) -> str:
 
 
 def _of_the_form(written: str, pattern: str, examples: Sequence[str]) -> str:
-    """In place of a pattern: an example of it, and what was probably meant."""
+    """What is shown in place of a pattern: an example of it, and what was probably meant."""
     simple = re.sub(r"[^A-Za-z0-9]+", "_", written).strip("_")
     slips: tuple[str, ...] = (
         written.lower(),

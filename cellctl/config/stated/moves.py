@@ -23,11 +23,11 @@ class StatedPlace:
     """Where an arm stands."""
 
     label: str
-    """In words; a taught pose by its name."""
+    """Name in words; a taught pose has its own."""
     joints_rad: Array
     """Shape (6,). Where the flange decides: joints near it, which tell how the arm is folded."""
     base_T_flange: RigidTransform | None = None
-    """None: the joints decide."""
+    """Pose of the flange; with None the joints decide."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,5 +45,5 @@ class StatedMove:
 
     @property
     def name(self) -> str:
-        """For findings."""
+        """Name in findings."""
         return f"{self.robot}: {self.start.label} to {self.end.label} ({self.kind.value})"

@@ -19,7 +19,7 @@ class StatedHead:
     """A stereo head that an arm carries."""
 
     name: str
-    """In the cell file."""
+    """Name in the cell file."""
     robot: str
     pose: str
     """The taught pose from which it measures, and which is to be planned."""
@@ -33,9 +33,9 @@ class StatedPart:
     """A part at one place at which heads measure it, and where the arms stand meanwhile."""
 
     label: str
-    """For findings, for example ``deck at the stand-off``."""
+    """Name in findings, for example ``deck at the stand-off``."""
     robot: str
-    """In whose base ``base_T_part`` is written."""
+    """The robot in whose base ``base_T_part`` is written."""
     base_T_part: RigidTransform
     seen: Mapping[str, tuple[Hole, ...]]
     """The holes that each head measures, by its name."""
@@ -55,7 +55,8 @@ class StatedMeasurement:
     parts: tuple[StatedPart, ...]
     """Each must be seen. The pose that counts is that of the last one in the first one."""
     thresholds: Array
-    """Of its components x, y, z (m) and rx, ry, rz (rad), in the axes of the first; shape (6,)."""
+    """Thresholds of its components x, y, z (m) and rx, ry, rz (rad), in the axes of the first;
+    shape (6,)."""
     share: float
     """The standard deviation of a component may be so much of its threshold."""
     between_heads: Array

@@ -32,7 +32,7 @@ class StopSupervisor:
         self._channel = channel
         self._confirm_s = confirm_s
         self._wanted_s: float | None = None
-        """Since when a stop is wanted; None while none is."""
+        """Time since when a stop is wanted; None while none is."""
         self._confirmed = False
         self._opener: threading.Thread | None = None
         self._retry_s = 0.0

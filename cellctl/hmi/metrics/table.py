@@ -11,7 +11,7 @@ class Metric:
     kind: str
     """gauge, counter or histogram."""
     unit: str
-    """Of its value; empty for numbers and flags."""
+    """Unit of its value; empty for numbers and flags."""
     labels: tuple[str, ...]
     text: str
 

@@ -53,7 +53,7 @@ class EventWatch:
                 yield self._told(Event.CALIBRATION_DUE, calibration=one["kind"], valid_until=ends)
 
     def age(self, age_s: float | None) -> Iterator[dict[str, Any]]:
-        """That the newest snapshot is this old; None when there has never been one."""
+        """Say that the newest snapshot is this old; None when there has never been one."""
         # A cell that was never seen is not missed: the page may be started long before the daemon.
         if age_s is not None and age_s > _AWAY_S and not self._away:
             self._away = True

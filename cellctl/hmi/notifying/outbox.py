@@ -20,7 +20,7 @@ class Retries:
     first_wait_s: float = 1.0
     longest_wait_s: float = 60.0
     keep_s: float = 3600.0
-    """After this long a message is old news."""
+    """Age after which a message is old news."""
     most: int = 100
     """Messages that wait; of more, the oldest are dropped."""
 

@@ -21,7 +21,7 @@ class Messenger(Protocol):
     """Delivers one message, or raises ``NotTold``."""
 
     name: str
-    """For the log, without secrets."""
+    """Name in the log, without secrets."""
 
     async def send(self, message: Mapping[str, Any]) -> None:
         """Deliver; returns when the receiver has it."""

@@ -31,7 +31,7 @@ def snapshot_in(language: str, snapshot: Message) -> dict[str, Any]:
 
 
 def permitted_in(language: str, permitted: Message) -> dict[str, Any]:
-    """By command: the reason why not."""
+    """The reason why not, by command."""
     return {
         name: one | {"reason": refusal(one["code"], one["reason"], language)}
         for name, one in permitted.items()

@@ -121,5 +121,5 @@ KINDS: Mapping[str, SealedKind] = {
     AUDIT: SealedKind(AuditRow, "id", lambda _, row: columns(row)),
     VALUE: SealedKind(ValueRow, "name", lambda _, row: columns(row), superseded=True),
 }
-"""By the name in the column ``kind``. Names and contents never change: stores are sealed with them.
-"""
+"""The kinds by the name in the column ``kind``. Names and contents never change: stores are sealed
+with them."""

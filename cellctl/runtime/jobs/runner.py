@@ -52,8 +52,8 @@ class JobRunner:
         """Set while no coroutine of a job runs."""
         self._resting.set()
         self._begun = self._finished = self._given_up = False
-        """Of the newest job: Starting has ended, Execute has ended, and its record was given up,
-        because the disk did not answer in time."""
+        """Whether Starting of the newest job has ended, whether Execute has, and whether its record
+        was given up, because the disk did not answer in time."""
         self.result = Result.NONE
         """Result of the newest job; NONE while it is open."""
 

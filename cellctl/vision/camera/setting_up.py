@@ -11,7 +11,7 @@ from cellctl.interfaces.stereo_camera import Image
 SATURATED_GREY = 254
 """From this value of 8 bit on a pixel counts as saturated."""
 _BLACK_GREY = 2
-"""Up to this value of 8 bit a pixel counts as black."""
+"""Greatest value of 8 bit of a pixel that counts as black."""
 _SMOOTHING_PX = 1.0
 _EDGE_SHARE = 0.999
 """Quantile of the slopes that counts as the steepest: not the maximum, which is a hot pixel."""

@@ -27,7 +27,7 @@ class Expectation:
     """The expected pose of a part."""
 
     camera_T_part: RigidTransform
-    """In the left camera."""
+    """Pose of the part in the left camera."""
     radius_m: float
     """Largest distance of a hole from where this pose puts it."""
 
@@ -49,7 +49,7 @@ class Assignment:
     """One way to assign a feature to every hole."""
 
     candidates: tuple[StereoCandidate, ...]
-    """In the order of the holes."""
+    """The candidates in the order of the holes."""
     misfit_m: float
     """Largest distance of a candidate from the fitted layout."""
 

@@ -28,7 +28,7 @@ _SOFT_PX = 0.3
 _SIZE_SIGMA = 0.02
 """Standard deviation of a rim's size about the drawing's, relative."""
 _FEWEST_EDGES = 24
-"""Of 64 directions. Fewer edge points than this leave the tilt to chance."""
+"""Least number of edge points, in 64 directions. Fewer leave the tilt to chance."""
 _UNKNOWNS = 4
 """Unknowns of each rim: a move in three directions and its growth, in radii."""
 

@@ -20,11 +20,11 @@ class MeasuredPoints:
 
     names: tuple[str, ...]
     nominal_m: Array
-    """In the axes of the part, shape (n, 3)."""
+    """Places on the drawing, in the axes of the part, shape (n, 3)."""
     measured_m: Array
-    """In C1, shape (n, 3)."""
+    """Places as seen, in C1, shape (n, 3)."""
     covariances_m2: Array
-    """Of the measured points in C1, shape (n, 3, 3)."""
+    """Covariances of the measured points in C1, shape (n, 3, 3)."""
     by_transfer: Array
     """Derivative of each point by the error of ``c1_T_c2``, shape (n, 3, 6)."""
     frames: int = 1

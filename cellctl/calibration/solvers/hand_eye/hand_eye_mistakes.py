@@ -84,7 +84,8 @@ def board_distance_m(poses: Sequence[HandEyePose]) -> float:
 
 
 def another_size(scale: float, sigma: float) -> list[str]:
-    """That the board has another size than it was given, if the robot's motions say so.
+    """Words that say that the board has another size than it was given, if the robot's motions say
+    so.
 
     ``scale`` is the robot's lengths over the board's, ``sigma`` its standard deviation.
     """

@@ -17,7 +17,8 @@ _SAME_DEG = 0.1
 _MOST_DEG = 360.0
 """Taught poses are bounded by it, so a wider bound bounds nothing."""
 _LONGEST_REACH_MM = 6000.0
-"""Of an arm whose kinematics are not known; the largest that are sold reach below 5 m."""
+"""Longest reach of an arm whose kinematics are not known; the largest that are sold reach below 5
+m."""
 
 
 def arm_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:

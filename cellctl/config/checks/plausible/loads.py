@@ -8,7 +8,8 @@ from cellctl.config.issue import ConfigIssue
 
 G_M_S2 = 9.81
 _MOST_TOLERANCE = 0.25
-"""Of the mass: a controller that reckons with a quarter more or less moves another arm."""
+"""Largest tolerance over the mass: a controller that reckons with a quarter more or less moves
+another arm."""
 _MOST_NOT_WEIGHED = 0.5
 _LEAST_TOLERANCE_MM = 0.5
 

@@ -15,7 +15,8 @@ _BACK = -0.2
 """Cosine between optical axis and flange axis: a camera that looks across the flange is near zero,
 one that is turned half round near -1."""
 _ALONG = 0.9
-"""Of the axes of a force sensor and its flange, either way: a disc between flange and gripper."""
+"""Least cosine between the axes of a force sensor and its flange, either way: a disc between flange
+and gripper."""
 
 
 def mounted_issues(cell: CellConfig) -> Iterator[ConfigIssue]:

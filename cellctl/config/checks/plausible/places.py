@@ -10,7 +10,8 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.spelling import nearest
 
 _ALIKE = 0.9
-"""Of two names: one letter of ten, so that folders named by one pattern pass."""
+"""Likeness of two names from which on one is taken for the other mistyped: one letter of ten, so
+that folders named by one pattern pass."""
 _ALIKE_HOST = 0.8
 _SYSTEM = ("/etc", "/usr", "/bin", "/sbin", "/lib", "/boot", "/proc", "/sys", "/dev")
 """What the daemon's unit lets nobody write (ProtectSystem=strict), and what no data belong into."""

@@ -11,7 +11,8 @@ _LEAST_RATE_HZ = 100.0
 """A tenth of a guard's usual rate: at 10 ms from sample to sample an arm at the speed of a touch
 (below 1 mm/s) has gone a hundredth of a millimetre, at 100 ms enough for the whole limit."""
 _MOST_OVER_OTHERS = 5.0
-"""Of a sensor's data sheet: along its axis it carries about twice as much as across."""
+"""Greatest ratio of two ranges in a sensor's data sheet: along its axis it carries about twice as
+much as across."""
 
 
 def sensor_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:

@@ -34,7 +34,7 @@ class LoopFigures:
     """What was measured of a cell with its tool; upper bounds."""
 
     stiffness_n_m: float
-    """Of arm and contact in series."""
+    """Stiffness of arm and contact in series."""
     dead_time_s: float
     """From a force at the tip to a motion of the tip in answer."""
 

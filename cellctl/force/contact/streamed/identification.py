@@ -35,7 +35,7 @@ is not mainly a delayed command, and a delay that was fitted to it means nothing
 _TOLERANCE = 0.30
 """Greatest relative difference of k θ between the closed loop and the calculation."""
 _GREATEST_OVERSHOOT = 0.15
-"""Of a step in the closed loop. The gains are made for 6 to 8 %."""
+"""Greatest overshoot of a step in the closed loop. The gains are made for 6 to 8 %."""
 _SETTLED_SHARE = 0.1
 """A force within this share of the step has settled."""
 _SETTLED_DEAD_TIMES = 6.0

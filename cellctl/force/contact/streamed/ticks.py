@@ -32,9 +32,9 @@ class TickRules:
     lost_s: float | None = None
     """A tick after this time ends the stream; None: after 50 ms or ten periods."""
     old_force_s: float = 5e-3
-    """With a newest force of this age the motion slows down: five samples at 1 kHz are missing."""
+    """Age of the newest force at which the motion slows down: five samples at 1 kHz are missing."""
     lost_force_s: float = 20e-3
-    """With a newest force of this age it is given up."""
+    """Age of the newest force at which the motion is given up."""
 
     def pace(self, tick_age_s: float, force_age_s: float) -> Pace:
         """How to go on after a tick; raises ``StreamLate``."""

@@ -52,7 +52,7 @@ class Attempt:
     touches_above: int = 0
     """Touches above the window that giving way has ended."""
     places_tried: int = 0
-    """Of a search for the holes of pins."""
+    """Places that a search for the holes of pins has tried."""
 
     def pose_at(self, travel_m: float) -> RigidTransform:
         """Flange after so much travel along −Z_D, beside it where the deck gave way."""

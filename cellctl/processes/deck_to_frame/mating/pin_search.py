@@ -15,7 +15,8 @@ from cellctl.processes.deck_to_frame.mating.settings import PinSettings
 _LIFT_M = 0.3e-3
 """More than arm and contact give way to a touch of 20 N at 1e5 N/m, the softest that is mated."""
 _PITCH = 1.2
-"""Of the catch. Circles on a square grid leave no gap up to 1.4; those on a spiral need more."""
+"""Distance of the places over the catch. Circles on a square grid leave no gap up to 1.4; those on
+a spiral need more."""
 
 
 def places(pins: PinSettings) -> tuple[tuple[float, float], ...]:

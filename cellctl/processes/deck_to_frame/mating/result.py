@@ -66,7 +66,7 @@ class GivingWay:
     total: LateralOffset
     """Displacement from the stand-off after the move."""
     searched: bool = False
-    """Not by what was felt, but to the next place of a search."""
+    """Whether it gave way not by what was felt, but to the next place of a search."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
