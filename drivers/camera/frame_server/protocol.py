@@ -61,7 +61,7 @@ _LAYOUTS = {
     2: _Layout(PixelFormat.MONO16, ">u2", 1),
     3: _Layout(PixelFormat.RGB8, ">u1", 3),
 }
-"""By the number on the wire."""
+"""Pixel formats by their number on the wire."""
 _IMAGES = {ServerCommand.IDENTIFY: 0, ServerCommand.GRAB_PAIR: 2, ServerCommand.GRAB_IMAGE: 1}
 _FORMATS = {
     # A stereo head measures holes in 8 bit grey; the interface of the head says so.

@@ -16,7 +16,7 @@ from drivers.camera.gige.protocol import CamerasSeen, CameraState, ListRequest, 
 
 _PANEL = "Cell"
 _KEYS = ("serial_number", "user_name", "ip_address", "id")
-"""By which a cell file names a camera."""
+"""What a cell file may name a camera by."""
 
 
 def add(app: typer.Typer) -> None:

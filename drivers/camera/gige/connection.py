@@ -19,7 +19,7 @@ from drivers.camera.gige.protocol import Answer, Grabbed, GrabRequest, Request, 
 
 Block = NDArray[np.uint8]
 _END_S = 5.0
-"""For a process that listens, to close its cameras: one that is killed leaves them locked."""
+"""Time for a process that listens to close its cameras: one that is killed leaves them locked."""
 
 
 class LibraryProcess:

@@ -35,7 +35,7 @@ from drivers.camera.gige.running_mean import RunningMean
 _PATIENCE_S = 2.0
 """What the process may take beyond the time-outs of its own before it counts as hung."""
 _CLOCK_DRIFT = 200e-6
-"""Of two quartz clocks against each other; makers state 50 to 100 ppm for each."""
+"""Drift of two quartz clocks against each other; makers state 50 to 100 ppm for each."""
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
 
@@ -69,7 +69,8 @@ class GigeDevice(Device):
         return "+".join(camera.serial_number for camera in self._opened)
 
     async def set_exposure(self, exposure_s: float) -> float:
-        """Of all cameras; kept when a lost camera is opened anew, until ``disconnect``."""
+        """Set the exposure of all cameras; it is kept when a lost camera is opened anew, until
+        ``disconnect``."""
 
         async def change() -> float:
             answer, _ = await self._asked(SetExposureRequest(exposure_s), _PATIENCE_S)
@@ -232,7 +233,8 @@ class GigeHead(GigeDevice, StereoCamera):
         self._max_difference_s = config.max_difference_s
         self._clocks_agree = config.clocks_agree
         self._ahead: tuple[float, float] | None = None
-        """At the last pair: monotonic time, and the clock of the left camera before the right."""
+        """What the last pair said: monotonic time, and how far the clock of the left camera was
+        before the right one's."""
 
     def _forget(self) -> None:
         self._ahead = None  # clocks begin anew with the power

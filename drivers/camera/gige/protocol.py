@@ -93,7 +93,8 @@ class SeenCamera:
     user_name: str
     ip_address: str
     subnets: tuple[str, ...]
-    """Of the interface that it is seen on: the PC's addresses there, with their lengths of mask."""
+    """Networks of the interface that it is seen on: the PC's addresses there, with their lengths of
+    mask."""
     state: CameraState
 
 
@@ -103,7 +104,8 @@ class OpenedCamera:
 
     serial_number: str
     pixel_format: str
-    """By PFNC; empty where the camera does not say it, or by a number that PFNC does not have."""
+    """Name by PFNC; empty where the camera does not say it, or says it by a number that PFNC does
+    not have."""
     exposure_s: float | None
     gain_db: float | None
 
@@ -127,14 +129,14 @@ class SentImage:
     size: int
     """Bytes."""
     device_time_ns: int
-    """By the camera's own clock."""
+    """Time of the exposure by the camera's own clock."""
     trigger_s: float
     """Monotonic, when its trigger had been sent; of a camera that runs freely, when it was asked
     for, which is before its exposure; NaN for a wire, whose trigger this PC does not see."""
     time_s: float
     """Monotonic, when it was whole in this PC."""
     exposure_s: float | None = None
-    """Of this exposure, by its chunks; None where it has none that say so."""
+    """Length of this exposure, by its chunks; None where it has none that say so."""
     gain_db: float | None = None
 
 

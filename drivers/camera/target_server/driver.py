@@ -7,8 +7,10 @@ from drivers.camera.target_server.connection import TargetServerConnection
 
 
 class TargetServerTracker(TargetTracker):
-    """Between ``connect`` and ``disconnect`` a lost connection is made again by the next request;
-    the request that lost it fails.
+    """Large-field tracker behind a server of targets.
+
+    Between ``connect`` and ``disconnect`` a lost connection is made again by the next request; the
+    request that lost it fails.
     """
 
     Config = TargetServerConfig

@@ -6,7 +6,7 @@ from drivers.modbus.coupler import Coupler
 
 
 def coupler(name: str, config: PneumaticGripperConfig) -> Coupler:
-    """Not connected yet."""
+    """The coupler of a gripper, not connected yet."""
     return Coupler(
         name,
         config,

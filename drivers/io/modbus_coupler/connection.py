@@ -5,5 +5,5 @@ from drivers.modbus.coupler import Coupler
 
 
 def coupler(name: str, config: ModbusCouplerConfig) -> Coupler:
-    """Not connected yet."""
+    """The coupler of a cell file's device, not connected yet."""
     return Coupler(name, config, config.inputs, config.outputs)

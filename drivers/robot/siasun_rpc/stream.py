@@ -86,7 +86,7 @@ class ServoStream(PoseStream):
         self._expect_setpoint()
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
-        """In the next tick, see what became of the last setpoint and send this one."""
+        """Wait for the next tick, see what became of the last setpoint, and send this one."""
         self._motion.raise_end()
         self._motion.check_state()
         self._bounds.set_point(base_T_flange, self._last, self._start, self.limits)

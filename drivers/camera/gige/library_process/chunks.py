@@ -14,7 +14,7 @@ _LAYOUTS = {"GEV": genapi.ChunkAdapterGEV, "U3V": genapi.ChunkAdapterU3V}
 
 @dataclass(frozen=True, slots=True)
 class ImageChunks:
-    """Of one image; None where its chunks do not say it."""
+    """What the chunks of one image say; None where they do not say it."""
 
     exposure_s: float | None = None
     gain_db: float | None = None

@@ -26,7 +26,7 @@ class Delivered:
     """One image; ``data`` lies in the producer's buffer and is good until that is given back."""
 
     pixel_format: str
-    """By PFNC, or its number where that does not name it."""
+    """Name by PFNC, or the number where PFNC does not name it."""
     width: int
     height: int
     data: NDArray[np.uint8]
@@ -83,7 +83,7 @@ class _Place:
 
     offset: int
     padding: int
-    """At the end of each line."""
+    """Bytes at the end of each line that belong to no pixel."""
 
 
 def _place(buffer: Any) -> _Place:

@@ -23,7 +23,7 @@ class Network:
 
     subnets: tuple[IPv4Interface, ...] = ()
     cameras: dict[str, IPv4Address] = field(default_factory=dict)
-    """By the producer's id of the camera."""
+    """Addresses by the producer's id of the camera."""
 
     def address(self, camera_id: str, *texts: str) -> IPv4Address | None:
         """Where a camera is; ``texts`` are names of it, of which some producers make one of it."""

@@ -35,7 +35,7 @@ class Found:
     seen: SeenCamera
     harvester: Harvester
     place: int
-    """In the harvester's list."""
+    """Place in the harvester's list."""
 
     def create(self) -> ImageAcquirer:
         """Open it; raises the exceptions of the standard's libraries."""
@@ -51,7 +51,7 @@ class Producers:
         self._files = tuple(files)
         self._harvesters: list[Harvester] = []
         self.unusable: tuple[str, ...] = ()
-        """Of the last ``look``: which producers cannot be used, and why."""
+        """Which producers cannot be used, and why, by the last ``look``."""
 
     def look(self) -> tuple[Found, ...]:
         """All cameras that there are now. Closes those that are open.

@@ -12,8 +12,8 @@ from drivers.robot.siasun.codec.angles import EULER_ORDERS
 COMPACT_VERSION = "2"
 """Version of the form for slow job interpreters (docs/protocols/sjl-2.md)."""
 REPORT_COUNTS = 500_000_000
-"""After so many reports, and after so many milliseconds, a job begins to count anew. A report
-contains the sum of its numbers, which has to fit into 32 bits."""
+"""Reports, and milliseconds, after which a job begins to count anew. A report contains the sum of
+its numbers, which has to fit into 32 bits."""
 Six = tuple[float, float, float, float, float, float]
 
 
@@ -49,7 +49,7 @@ class Hello:
     step_max_mm: float = 0.0
     deadman_ms: int = 0
     stream: StreamOption | None = None
-    """None when the job program cannot stream."""
+    """What the job program says of streaming; None when it cannot stream."""
     acceleration_max_mm_s2: float = 0.0
     """What 100 percent of acceleration mean, of a job program that takes percents."""
 

@@ -16,7 +16,7 @@ _READS_PER_POLL = 8
 """Most reads in one turn of the guard: a controller that floods it must not keep it from
 samples."""
 _MOST_WAITING = 64
-"""With so many calls without a reply the controller counts as lost."""
+"""Calls without a reply with which the controller counts as lost."""
 
 
 class BlockingLine:

@@ -97,5 +97,5 @@ _SHAPES: dict[str, tuple[int, bool, Callable[[str, list[int]], Record]]] = {
     "STOPD": (7, False, partial(_posed, StopDone)),
     "STAT": (19, False, _status),
 }
-"""By the word of a record: how many numbers it has before the sum, whether a reason follows the
-first of them, and what makes a value of them."""
+"""How a record is read, by its word: how many numbers it has before the sum, whether a reason
+follows the first of them, and what makes a value of them."""
