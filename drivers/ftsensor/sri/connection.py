@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 
 
 class Connection(ABC):
-    """One link to the box. Only ``wait`` blocks.
+    """One link to the box. Only ``wait`` blocks, and a ``connect`` that has to look up a name.
 
     All methods but ``close`` and ``fileno`` raise ``LinkLost`` or ``ConnectTimeout`` and leave the
     link closed then.

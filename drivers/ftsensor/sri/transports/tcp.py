@@ -3,6 +3,7 @@
 import errno
 import select
 import socket
+from typing import Any, NamedTuple
 
 from drivers.ftsensor.sri import faults
 from drivers.ftsensor.sri.connection import Connection
@@ -12,30 +13,47 @@ _UNANSWERED_MS = 2000
 """What was sent and is not acknowledged by then ends the link; see ``connect``."""
 
 
+class _Found(NamedTuple):
+    """What a name stands for."""
+
+    family: int
+    address: Any
+
+
+def _look_up(host: str, port: int) -> _Found:
+    family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    return _Found(family, address)
+
+
 class TcpConnection(Connection):
     """A non-blocking socket without Nagle's delay."""
 
     def __init__(self, host: str, port: int) -> None:
         self.peer = f"{host}:{port}"
-        self._address = (host, port)
+        self._host, self._port = host, port
+        self._found: _Found | None = None
+        self._answered: _Found | None = None
+        """Where the box has answered before."""
         self._socket: socket.socket | None = None
         self._established = False
 
     def connect(self) -> None:
-        """Begin; a name that does not resolve is ``ConnectTimeout``."""
+        """Begin; a name that does not resolve is ``ConnectTimeout``.
+
+        A name is looked up until the box has answered there, and then no more: a dead name server
+        takes seconds, in which the guard would neither beat nor repeat its stop.
+        """
         self.close()
         try:
-            family, kind, protocol, _, address = socket.getaddrinfo(
-                *self._address, type=socket.SOCK_STREAM
-            )[0]
-            self._socket = socket.socket(family, kind, protocol)
+            self._found = self._answered or _look_up(self._host, self._port)
+            self._socket = socket.socket(self._found.family, socket.SOCK_STREAM)
             self._socket.settimeout(0.0)
             # Otherwise a command waits for the acknowledgement of the one before, some 40 ms.
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
             # A pulled cable sends no farewell. Without this limit the kernel repeats what was sent
             # for a quarter of an hour before it reports the link as lost.
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _UNANSWERED_MS)
-            code = self._socket.connect_ex(address)
+            code = self._socket.connect_ex(self._found.address)
         except OSError as error:
             self.close()
             raise faults.cannot_connect(self.peer, error) from error
@@ -57,6 +75,7 @@ class TcpConnection(Connection):
             self.close()
             raise faults.cannot_connect(self.peer, errno.errorcode.get(code, code))
         self._established = True
+        self._answered = self._found
         return True
 
     def close(self) -> None:

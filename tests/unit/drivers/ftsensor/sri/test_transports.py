@@ -5,6 +5,7 @@ import pty
 import socket
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import pytest
 
@@ -84,6 +85,44 @@ def test_a_name_that_does_not_resolve_is_named() -> None:
     connection = TcpConnection("box.invalid", 4008)
     with pytest.raises(ConnectTimeout, match=r"box\.invalid:4008"):
         connection.connect()
+
+
+@pytest.fixture
+def lookups(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Hosts that were looked up."""
+    looked_up: list[str] = []
+    look_up = socket.getaddrinfo
+
+    def counted(host: str, port: int, *, type: int) -> Any:  # noqa: A002 - named by the library
+        looked_up.append(host)
+        return look_up(host, port, type=type)
+
+    monkeypatch.setattr(socket, "getaddrinfo", counted)
+    return looked_up
+
+
+def test_a_box_that_has_answered_is_called_again_without_a_lookup(
+    box: socket.socket, lookups: list[str]
+) -> None:
+    connection = calling(box)
+    for _ in range(2):
+        connection.connect()
+        with box.accept()[0]:
+            stand(connection)
+    connection.close()
+    assert lookups == ["127.0.0.1"]
+
+
+def test_a_box_that_has_not_answered_is_looked_up_again(
+    box: socket.socket, lookups: list[str]
+) -> None:
+    connection = calling(box)
+    box.close()
+    for _ in range(2):
+        with pytest.raises(ConnectTimeout):  # noqa: PT012
+            connection.connect()
+            stand(connection)
+    assert lookups == ["127.0.0.1"] * 2
 
 
 def test_a_broken_tcp_link_says_so_when_it_sends(box: socket.socket) -> None:
