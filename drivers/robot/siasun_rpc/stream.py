@@ -6,7 +6,6 @@ asks before each setpoint what became of the one before, and starts from the las
 """
 
 import asyncio
-import math
 from collections.abc import Callable
 from typing import cast
 
@@ -29,6 +28,7 @@ from drivers.robot.siasun_rpc.config import SiasunRpcConfig
 from drivers.robot.siasun_rpc.connections.link import RpcLink
 from drivers.robot.siasun_rpc.motion import Motion
 from drivers.robot.siasun_rpc.protocol import request
+from drivers.robot.siasun_rpc.tick_count import TickCount
 from drivers.robot.siasun_rpc.vendor import TaskState
 from drivers.robot.siasun_rpc.watch import read_pose
 
@@ -61,7 +61,7 @@ class ServoStream(PoseStream):
         self._bounds = bounds
         self._on_stale = on_stale
         self._report: StreamReport | None = None
-        self._late = self._lost = 0
+        self._late = self._without_effect = 0
         self._ineffective = 0
         """Setpoints in a row that the controller has not followed."""
         self._sent: RigidTransform | None = None
@@ -80,7 +80,7 @@ class ServoStream(PoseStream):
         asked_s = now_s()
         (pose,) = await self._exchange(self._pose_question)
         here = read_pose(pose, self._config.euler)
-        self._began_s = asked_s
+        self._ticks = TickCount(self.period_s, asked_s)
         self._start = self._last = self._command = here
         self._report = StreamReport(asked_s, 1, here, late=0, lost=0, sent_s=asked_s)
         self._expect_setpoint()
@@ -91,7 +91,7 @@ class ServoStream(PoseStream):
         self._motion.check_state()
         self._bounds.set_point(base_T_flange, self._last, self._start, self.limits)
         before, self._last = self._last, base_T_flange
-        tick = await self._next_tick()
+        await self._motion.pause(self._ticks.begin_next(now_s()) - now_s())
         self._expect_setpoint()
         asked_s = now_s()
         here = await self._look_back()
@@ -101,8 +101,10 @@ class ServoStream(PoseStream):
         self._sent = base_T_flange if caught_up else self._towards(base_T_flange)
         sent_s = now_s()
         await self._send(self._sent)
-        self._late += now_s() > self._began_s + tick * self.period_s
-        self._report = StreamReport(asked_s, tick, here, self._late, self._lost, sent_s)
+        ticks = self._ticks
+        self._late += now_s() > ticks.end_s
+        lost = ticks.lost + self._without_effect
+        self._report = StreamReport(asked_s, ticks.tick, here, self._late, lost, sent_s)
         return self._report
 
     async def finish(self, timeout_s: float) -> None:
@@ -119,14 +121,6 @@ class ServoStream(PoseStream):
         if self._stale is not None:
             self._stale.cancel()
 
-    async def _next_tick(self) -> int:
-        """Number of the next tick at its beginning. Ticks that have gone by are lost."""
-        elapsed = (now_s() - self._began_s) / self.period_s
-        tick = max(self.report.tick + 1, math.ceil(elapsed) + 1)
-        self._lost += tick - self.report.tick - 1
-        await self._motion.pause(self._began_s + (tick - 1) * self.period_s - now_s())
-        return tick
-
     async def _look_back(self) -> RigidTransform:
         """The pose of the flange. Also finds, by the state of its task, whether the last setpoint
         counts."""
@@ -142,7 +136,7 @@ class ServoStream(PoseStream):
             self._command, self._ineffective = self._sent, 0
         else:
             await self._motion.unless_bad_end(cast(int, state))
-            self._lost += 1
+            self._without_effect += 1
             self._ineffective += 1
             if self._ineffective * self.period_s > self.limits.loss_s:
                 raise StreamStale(f"{self._robot}: follows no setpoint any more")

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cellctl.cell.contact_motion.ticks import MotionKind
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.peg_in_hole.insertion.jam import jam_ratio
 from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart
@@ -96,7 +97,7 @@ def _insertion_limit_n(record: RunRecord) -> float | None:
 
 
 def _jam(record: RunRecord, ticks: ReadTicks) -> Array | None:
-    """Ratio of each tick; None for runs of earlier versions, which have no task."""
+    """Ratio of each tick of a feed; None for runs of earlier versions, which have no task."""
     written = record.document(keys.TASK)
     if not written:
         return None
@@ -105,7 +106,11 @@ def _jam(record: RunRecord, ticks: ReadTicks) -> Array | None:
     force_n = np.stack([values[name] for name in ("fx_n", "fy_n", "fz_n")], axis=1)
     moment_nm = np.stack([values[name] for name in ("mx_nm", "my_nm", "mz_nm")], axis=1)
     bore_mm = values["depth_mm"] - fit.hole_chamfer_mm - fit.peg_chamfer_mm
-    return jam_ratio(force_n, moment_nm, bore_mm * MM, fit.peg_radius_mm * MM, fit.friction)
+    ratio = jam_ratio(force_n, moment_nm, bore_mm * MM, fit.peg_radius_mm * MM, fit.friction)
+    if not ticks.kinds:
+        return ratio
+    # The pushes of the verdict go to the walls on purpose.
+    return np.where(np.array(ticks.kinds) == MotionKind.FEED.value, ratio, np.nan)
 
 
 def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:

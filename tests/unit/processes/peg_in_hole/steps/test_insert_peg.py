@@ -29,8 +29,8 @@ from cellctl.processes.peg_in_hole.stations import peg_recipes
 from cellctl.processes.peg_in_hole.steps import insert_peg
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.entries import RunRecord
-from cellctl.records.report.sections import FactList
+from cellctl.records.entries import Artefact, RunRecord
+from cellctl.records.report.sections import Drawing, FactList
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard
@@ -43,6 +43,7 @@ from tests.unit.cell.contact_motion.elastic_world import (
     contact,
     wall,
 )
+from tests.unit.processes.peg_in_hole.record.test_tick_log import ticked
 from tests.unit.processes.peg_in_hole.tasks import pin
 from tests.unit.records.conftest import start
 
@@ -121,6 +122,13 @@ async def test_a_search_that_finds_no_hole_keeps_its_path_and_leaves_the_face(
         for fact in block.facts
     ]
     assert "estimate, tilted-valley" in dict(facts), "why the other searches were not the first"
+    ticks = ticked(20).text().encode()
+    file = Artefact(record.head.started, keys.ticks(keys.INSERTION), "", len(ticks), "text/csv")
+    kept = replace(record, artefacts=(file,))
+    seen = pages(kept, lambda _artefact: ticks).sections[1].blocks
+    over_depth, over_time = (block.svg for block in seen if isinstance(block, Drawing))
+    assert "jam ratio" in over_depth
+    assert "age, ms" in over_time
 
 
 async def test_a_wedged_peg_is_left_where_it_stands_and_its_search_is_kept(
