@@ -24,6 +24,7 @@ from cellctl.cell.run_notes import RunNotes
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.cell import Plc
+from cellctl.daemon.heap import give_back_large_blocks
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.errors import CellError
@@ -64,6 +65,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
     is stopped, an open run is closed as aborted and no child process is left.
     """
     config = overrides.of(load_cell(cell_file))
+    give_back_large_blocks()
     stop = asyncio.Event()
     loop = asyncio.get_running_loop()
     for number in SIGNALS:
