@@ -19,7 +19,8 @@ from cellctl.hmi.notifying.notifier import Notifier
 from cellctl.hmi.people import People
 from cellctl.hmi.problems import RESPONSES, add_handlers
 from cellctl.hmi.rates import RateLimit
-from cellctl.hmi.routes import commands, files, live, metrics, records, session
+from cellctl.hmi.routes import commands, exports, files, live, metrics, records, session
+from cellctl.hmi.routes.exports import RunExporter
 from cellctl.hmi.sessions import Sessions
 from cellctl.hmi.settings import LOOPBACK, PageSettings
 from cellctl.hmi.shell import Shell
@@ -40,6 +41,7 @@ class Parts:
     people: People
     sessions: Sessions
     archive: ArchiveReader
+    exporter: RunExporter
     commands: RateLimit
     sign_ins: RateLimit
     metrics: MetricsKeeper
@@ -59,6 +61,7 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
         people=people,
         sessions=sessions,
         archive=ArchiveReader(data_dir),
+        exporter=RunExporter(data_dir),
         commands=RateLimit(COMMANDS_A_MINUTE, 60.0),
         sign_ins=RateLimit(SIGN_INS_A_MINUTE, 60.0),
         metrics=MetricsKeeper(hub, streams, data_dir),
@@ -90,7 +93,7 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
     )
     app.state.parts = parts
     add_handlers(app)
-    for one in (session, live, metrics, commands, records):
+    for one in (session, live, metrics, commands, records, exports):
         app.include_router(one.router, prefix="/api/v1")
     app.include_router(files.router)
     return Shell(app, LOOPBACK | frozenset(settings.hosts))

@@ -1,9 +1,5 @@
 """What the cell did: runs, their files, the audit log."""
 
-import asyncio
-import sys
-import tempfile
-from pathlib import Path
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request
@@ -18,7 +14,6 @@ from cellctl.hmi.words.spoken import run_in
 from cellctl.records.run_filter import RunFilter
 
 router = APIRouter(tags=["records"])
-REPORT_S = 60.0
 _SHOWN = frozenset({"image/png", "image/jpeg"})
 """What a browser may show; everything else it may only keep."""
 
@@ -84,41 +79,6 @@ async def artefact(request: Request, number: int, name: str, _visitor: Asked) ->
     if file.media_type not in _SHOWN:
         headers["Content-Disposition"] = f'attachment; filename="{file.sha256[:12]}"'
     return Response(data, media_type=file.media_type, headers=headers)
-
-
-@router.get("/runs/{number}/report", response_class=Response)
-async def report(request: Request, number: int, _visitor: Asked) -> Response:
-    """The report as one file to keep, made now; a page of its own, not a part of this one."""
-    archive = request.app.state.parts.archive
-    # Asked first, so that a number that does not exist is 404 and costs no process.
-    await archive.run(number)
-    with tempfile.TemporaryDirectory() as folder:
-        data = await _made(archive.data_dir, number, Path(folder))
-    headers = {"Content-Disposition": f'attachment; filename="run-{number}.html"'}
-    return Response(data, media_type="text/html", headers=headers)
-
-
-async def _made(data_dir: Path, number: int, folder: Path) -> bytes:
-    # In a process of its own: it draws pictures, and the page would stand still meanwhile.
-    out = folder / "report"
-    arguments = ("runs", "export", str(number), "--single-file", "--out", str(out))
-    process = await asyncio.create_subprocess_exec(
-        sys.executable, "-m", "cellctl", *arguments, "--data-dir", str(data_dir),
-        stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
-    )  # fmt: skip
-    try:
-        async with asyncio.timeout(REPORT_S):
-            _, complaint = await process.communicate()
-    except TimeoutError:
-        raise Problem(504, "report", f"the report takes more than {REPORT_S:g} s") from None
-    finally:
-        if process.returncode is None:
-            process.kill()
-            await process.wait()
-    if process.returncode:
-        words = complaint.decode(errors="replace").strip().splitlines() or [""]
-        raise Problem(500, "report", words[0])
-    return (out / "report.html").read_bytes()
 
 
 @router.get("/audit")

@@ -1,0 +1,128 @@
+"""What is made of a run when somebody asks for it: the report, and the recording for viewers."""
+
+import asyncio
+import os
+import sys
+import tempfile
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager
+from enum import StrEnum
+from pathlib import Path
+from typing import BinaryIO
+
+from fastapi import APIRouter, Request
+from fastapi.responses import Response, StreamingResponse
+
+from cellctl.hmi.access import Asked
+from cellctl.hmi.problems import Problem
+
+router = APIRouter(tags=["records"])
+REPORT_S = 60.0
+RECORDING_S = 180.0
+"""Most that each takes: some ten times what it takes on a PC that has little else to do."""
+AT_ONCE = 2
+"""Exports of all visitors together. Each fills a processor for seconds, and the recording of a run
+takes some hundred MB of the disk until it is sent; the cell is not to wait for either."""
+_PIECE_BYTES = 2**18
+
+
+class Images(StrEnum):
+    """What becomes of the raw images; the words are those of ``cellctl runs export``."""
+
+    LOSSLESS = "lossless"
+    JPEG = "jpeg"
+    NONE = "none"
+
+
+class RunExporter:
+    """Has `cellctl runs export` make files in processes of their own.
+
+    They draw and compress, and the page would stand still meanwhile.
+    """
+
+    def __init__(self, data_dir: Path) -> None:
+        self._data_dir = data_dir
+        self._running = 0
+
+    @asynccontextmanager
+    async def made(
+        self, number: int, form: tuple[str, ...], name: str, limit_s: float
+    ) -> AsyncIterator[Path]:
+        """The folder with what was made, which is gone afterwards; ``name`` is that of ``--out``.
+
+        Raises ``Problem``: 429 while others export, 504 after ``limit_s``, 500 with the words of
+        the command.
+        """
+        if self._running >= AT_ONCE:
+            raise Problem(429, "busy", "other exports are under way; try again soon").later(5.0)
+        self._running += 1
+        try:
+            with tempfile.TemporaryDirectory(prefix="cellctl-export-") as folder:
+                out = Path(folder) / name
+                await self._run(str(number), *form, "--out", str(out), limit_s=limit_s)
+                yield Path(folder)
+        finally:
+            self._running -= 1
+
+    async def _run(self, *arguments: str, limit_s: float) -> None:
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, "-m", "cellctl", "runs", "export", *arguments,
+            "--data-dir", str(self._data_dir),
+            stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
+        )  # fmt: skip
+        try:
+            async with asyncio.timeout(limit_s):
+                _, complaint = await process.communicate()
+        except TimeoutError:
+            raise Problem(504, "export", f"the export takes more than {limit_s:g} s") from None
+        finally:
+            if process.returncode is None:
+                process.kill()
+                await process.wait()
+        if process.returncode:
+            words = complaint.decode(errors="replace").strip().splitlines() or [""]
+            raise Problem(500, "export", words[0])
+
+
+@router.get("/runs/{number}/report", response_class=Response)
+async def report(request: Request, number: int, _visitor: Asked) -> Response:
+    """The report as one file to keep, made now; a page of its own, not a part of this one."""
+    exporter = await _exporter(request, number)
+    async with exporter.made(number, ("--single-file",), "report", REPORT_S) as folder:
+        data = (folder / "report" / "report.html").read_bytes()
+    headers = {"Content-Disposition": f'attachment; filename="run-{number}.html"'}
+    return Response(data, media_type="text/html", headers=headers)
+
+
+@router.get("/runs/{number}/recording", response_class=StreamingResponse)
+async def recording(
+    request: Request, number: int, _visitor: Asked, images: Images = Images.JPEG
+) -> Response:
+    """The whole run as one MCAP file for Foxglove, made now; ``images=lossless`` is much larger."""
+    exporter = await _exporter(request, number)
+    name = f"run-{number}.mcap"
+    form = ("--mcap", "--images", images.value)
+    async with exporter.made(number, form, name, RECORDING_S) as folder:
+        # The folder goes now, and the file with its last reader: also when whoever asked has gone
+        # away in the middle, of which no handler is told.
+        file = (folder / name).open("rb")
+    headers = {
+        "Content-Disposition": f'attachment; filename="{name}"',
+        "Content-Length": str(os.fstat(file.fileno()).st_size),
+    }
+    return StreamingResponse(_pieces(file), media_type="application/octet-stream", headers=headers)
+
+
+def _pieces(file: BinaryIO) -> Iterator[bytes]:
+    # In memory as a whole it would be as large as the page's process.
+    with file:
+        while piece := file.read(_PIECE_BYTES):
+            yield piece
+
+
+async def _exporter(request: Request, number: int) -> RunExporter:
+    parts = request.app.state.parts
+    # Asked first, so that a number that does not exist is 404 and costs no process.
+    await parts.archive.run(number)
+    exporter: RunExporter = parts.exporter
+    return exporter
