@@ -27,6 +27,7 @@ from cellctl.config.cell import Plc
 from cellctl.daemon.heap import give_back_large_blocks
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
+from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.records.async_store import AsyncRunStore
@@ -87,7 +88,10 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # interrupted, and its alarms are known again.
         await unit.open()
         arbiter, plc = await _command_path(config.plc, unit, store)
-        local = local_api(cell, unit, arbiter, store, data_dir, registers=plc.shown)
+        vitals = DaemonVitals(lambda: plc.line_beat_age_s)
+        local = local_api(
+            cell, unit, arbiter, store, data_dir, registers=plc.shown, daemon=vitals.snapshot
+        )
         publisher = StatusPublisher(unit, partial(_show, plc, local.feed, cell.run_notes))
         stack.push_async_callback(plc.stop)
         await plc.start()  # first of all: a second daemon must not take over the robots
@@ -97,7 +101,8 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # The last thing on the stack is the first to happen: the arm is stopped while every link
         # still stands and the fault is known.
         stack.push_async_exit(partial(_end, unit))
-        await until_told(stop, _work(cell, unit, supervise(cell, unit, plc, publisher, store), plc))
+        watches = supervise(cell, unit, plc, publisher, store, vitals=vitals)
+        await until_told(stop, _work(cell, unit, watches, plc))
         _log.info("asked to end")
         notify("STOPPING=1")
     _log.info("ended")

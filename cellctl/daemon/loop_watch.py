@@ -2,6 +2,7 @@
 
 import asyncio
 import resource
+from collections.abc import Callable
 
 from cellctl import log
 from cellctl.clock import now_s
@@ -13,8 +14,12 @@ HELD_S = 0.25
 """A robot's dead man waits for a second and more: this is noted long before an arm stops."""
 
 
-async def watch_loop(period_s: float = PERIOD_S, held_s: float = HELD_S) -> None:
+async def watch_loop(
+    turn: Callable[[float], None], period_s: float = PERIOD_S, held_s: float = HELD_S
+) -> None:
     """Log each turn that took longer than ``held_s``, and what it was spent on; until cancelled.
+
+    ``turn`` is called at each turn with the time in seconds by which it came too late.
 
     Much processor time means that something computed on the loop. Little of it means that the loop
     waited: for the disk, or for a processor that other programs had.
@@ -23,7 +28,9 @@ async def watch_loop(period_s: float = PERIOD_S, held_s: float = HELD_S) -> None
         began_s, before = now_s(), resource.getrusage(resource.RUSAGE_THREAD)
         await asyncio.sleep(period_s)
         took_s, after = now_s() - began_s, resource.getrusage(resource.RUSAGE_THREAD)
-        if took_s - period_s > held_s:
+        late_s = max(0.0, took_s - period_s)
+        turn(late_s)
+        if late_s > held_s:
             _log.warning(
                 "event loop held",
                 seconds=round(took_s, 3),

@@ -10,6 +10,7 @@ from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.disk_watch import DiskWatch
 from cellctl.daemon.loop_watch import watch_loop
 from cellctl.daemon.notify import Watchdog
+from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors import CellError
 from cellctl.errors.force import GuardNotRealTime
 from cellctl.guard.report import GuardTrip, TripReason
@@ -28,6 +29,8 @@ async def supervise(
     plc: PlcInterface,
     publisher: StatusPublisher,
     store: AsyncRunStore,
+    *,
+    vitals: DaemonVitals,
 ) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
     beat = partial(_beat, plc, Watchdog())
@@ -39,7 +42,7 @@ async def supervise(
         tasks.create_task(_watch_links(cell, unit))
         tasks.create_task(_poll_devices(cell, unit))
         tasks.create_task(_watch_disk(DiskWatch(store, unit)))
-        tasks.create_task(watch_loop())
+        tasks.create_task(watch_loop(vitals.turn))
 
 
 def _beat(plc: PlcInterface, watchdog: Watchdog) -> None:

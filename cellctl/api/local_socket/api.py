@@ -34,14 +34,16 @@ def local_api(
     data_dir: Path,
     *,
     registers: Callable[[], list[dict[str, Any]]],
+    daemon: Callable[[], dict[str, Any]],
 ) -> LocalApiParts:
     """``data_dir`` has the socket unless cell file or systemd say otherwise.
 
-    ``registers`` gives what the line PLC and the cell show each other.
+    ``registers`` gives what the line PLC and the cell show each other, ``daemon`` whether the
+    daemon itself is well.
     """
     settings = cell.config.local_api
     path = Path(settings.socket) if settings.socket else default_path(data_dir)
-    view = LiveView(cell, unit, arbiter)
+    view = LiveView(cell, unit, arbiter, daemon)
     reporter = Reporter(cell, unit, arbiter, store, view)
 
     async def describe() -> dict[str, Any]:

@@ -6,7 +6,7 @@ No number is NaN: a value that is missing is null.
 """
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 from cellctl.cell.devices import Cell
@@ -16,6 +16,7 @@ from cellctl.command.permitted import permitted
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
 from cellctl.fault_catalogue import known_fault
+from cellctl.guard.client import GuardClient
 from cellctl.packml.state import State
 from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.cell_status import CellStatus
@@ -35,7 +36,15 @@ _WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N·m"), ("My", "N·m")
 class LiveView:
     """Builds snapshots. Belongs to the event loop, changes nothing and does not raise."""
 
-    def __init__(self, cell: Cell, unit: UnitController, arbiter: CommandArbiter) -> None:
+    def __init__(
+        self,
+        cell: Cell,
+        unit: UnitController,
+        arbiter: CommandArbiter,
+        daemon: Callable[[], Object],
+    ) -> None:
+        """``daemon`` gives whether the daemon itself is well, from memory as all the rest."""
+        self._daemon = daemon
         self._cell = cell
         self._unit = unit
         self._arbiter = arbiter
@@ -118,6 +127,8 @@ class LiveView:
         )
         links = {name: _problem(check) for name, check in self._cell.health_checks().items()}
         return {
+            "daemon": self._daemon(),
+            "guards": {name: _guard(guard) for name, guard in self._cell.guards.items()},
             "permitted": {
                 name: {"code": int(code), "reason": code.text if code else ""}
                 for name, code in codes.items()
@@ -143,6 +154,15 @@ class LiveView:
             "wrench": _limited(_WRENCH, wrench),
             "peaks": [number(value) for value in status.force_peaks],
         }
+
+
+def _guard(guard: GuardClient) -> Object:
+    health = guard.health()
+    return {
+        "late_wakeups": health.late_wakeups,
+        "flange_age_s": number(health.flange_age_s),
+        "resident_peak_bytes": health.resident_peak_bytes,
+    }
 
 
 def _pressing_n(state: State, wrench: Sequence[float]) -> float | None:

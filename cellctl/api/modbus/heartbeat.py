@@ -24,9 +24,15 @@ class HeartbeatWatch:
         self._timeout_s = timeout_s
         self._on_lost = on_lost
         self._value = 0
+        self._seen_s: float | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._lost = False
         self._graced = False
+
+    @property
+    def age_s(self) -> float | None:
+        """Since the counter has changed; None before its first change."""
+        return None if self._seen_s is None else asyncio.get_running_loop().time() - self._seen_s
 
     @property
     def alive(self) -> bool:
@@ -43,6 +49,7 @@ class HeartbeatWatch:
         if value == self._value:
             return False
         self._value = value
+        self._seen_s = asyncio.get_running_loop().time()
         back = self._timer is None
         if self._timer is not None:
             self._timer.cancel()
@@ -96,6 +103,12 @@ class LineHeartbeat:
         """True once the client in command was alive and stood still, until it beats again."""
         watch = self._watches.get(self._in_command)
         return watch is not None and watch.lost
+
+    @property
+    def age_s(self) -> float | None:
+        """Since the counter of the client in command has changed; None before its first change."""
+        watch = self._watches.get(self._in_command)
+        return None if watch is None else watch.age_s
 
     def in_command(self, client: str) -> bool:
         """True for the address of the client in command, also while its line is lost."""

@@ -137,6 +137,11 @@ class PlcInterface:
             self._worker = None
         await self._server.stop()
 
+    @property
+    def line_beat_age_s(self) -> float | None:
+        """Since the heartbeat of the client in command has changed; None before that."""
+        return self._line_heartbeat.age_s
+
     def publish(self, status: CellStatus) -> None:
         """Show a new snapshot, all of it or nothing."""
         self._status = status

@@ -6,7 +6,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from prometheus_client.core import GaugeMetricFamily, Metric
+from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
 from cellctl.hmi.hub import Hub
@@ -42,6 +42,8 @@ class SnapshotCollector(Collector):
             yield from _unit(hub.snapshot)
             yield from _figures(hub.snapshot)
             yield from _forces(hub.snapshot)
+            yield from _guards(hub.snapshot)
+            yield from _daemon(hub.snapshot)
             yield from _devices(hub.snapshot)
         if hub.description:
             yield from _calibrations(hub.description)
@@ -97,6 +99,26 @@ def _forces(now: Mapping[str, Any]) -> Iterator[Metric]:
     yield _family(table.GUARD_TRIPPED, trips)
     ages = [((one["sensor"],), one["age_s"]) for one in sensors if one["age_s"] is not None]
     yield _family(table.SAMPLE_AGE, ages)
+
+
+def _guards(now: Mapping[str, Any]) -> Iterator[Metric]:
+    guards = now["guards"]
+    # The guard counts by itself, and begins at 0 when it is started anew: that is a counter.
+    late = CounterMetricFamily(
+        table.GUARD_LATE.name, table.GUARD_LATE.text, labels=table.GUARD_LATE.labels
+    )
+    for name, guard in guards.items():
+        late.add_metric((name,), guard["late_wakeups"])
+    yield late
+    ages = [((name,), one["flange_age_s"]) for name, one in guards.items()]
+    yield _family(table.FLANGE_AGE, [(labels, age) for labels, age in ages if age is not None])
+
+
+def _daemon(now: Mapping[str, Any]) -> Iterator[Metric]:
+    daemon = now["daemon"]
+    yield _family(table.LOOP_LATE, _one(daemon["loop_late_s"]))
+    yield _family(table.LINE_BEAT_AGE, _one(daemon["line_beat_age_s"]))
+    yield _family(table.DAEMON_BYTES, _one(daemon["resident_bytes"]))
 
 
 def _devices(now: Mapping[str, Any]) -> Iterator[Metric]:

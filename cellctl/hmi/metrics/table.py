@@ -51,6 +51,22 @@ FORCE_PEAK = _gauge(
 FORCE_LIMIT = _gauge("force_limit_newtons", "N", "force at which the guard trips", "sensor")
 GUARD_TRIPPED = _gauge("guard_tripped", "", "1 while a trip is latched", "sensor")
 SAMPLE_AGE = _gauge("sample_age_seconds", "s", "age of the newest sample of a sensor", "device")
+GUARD_LATE = _counter(
+    "guard_late_wakeups", "", "times that a guard woke more than a millisecond late", "sensor"
+)
+FLANGE_AGE = _gauge(
+    "guard_flange_age_seconds",
+    "s",
+    "age of the pose that a guard has from its robot",
+    "sensor",
+)
+LINE_BEAT_AGE = _gauge(
+    "line_beat_age_seconds", "s", "since the counter of the line PLC in command has changed"
+)
+LOOP_LATE = _gauge(
+    "daemon_loop_late_seconds", "s", "latest turn of the daemon's event loop within 15 s"
+)
+DAEMON_BYTES = _gauge("daemon_resident_bytes", "B", "memory of the daemon, without its children")
 LINK_UP = _gauge("link_up", "", "1 while the link of a device is whole", "device")
 CALIBRATION_EXPIRY = _gauge(
     "calibration_expiry_timestamp_seconds", "s since 1970", "end of a calibration", "kind"
@@ -69,9 +85,10 @@ BUILD_INFO = _gauge("build_info", "", "1, with version and SIMULATED", "version"
 
 METRICS = (
     STATE, STATE_SECONDS, STEP, LINE_ALIVE, READY, GOOD_PARTS, RUNS, RUN_DURATION, STEP_DURATION,
-    FIGURE, LIMIT_RATIO, FORCE, MOMENT, FORCE_PEAK, FORCE_LIMIT, GUARD_TRIPPED, SAMPLE_AGE, LINK_UP,
-    CALIBRATION_EXPIRY, CALIBRATION_OK, ALARMS_ACTIVE, ALARMS, DAEMON_LINKED, SNAPSHOT_AGE, CLIENTS,
-    STORE_BYTES, DISK_FREE, BUILD_INFO,
+    FIGURE, LIMIT_RATIO, FORCE, MOMENT, FORCE_PEAK, FORCE_LIMIT, GUARD_TRIPPED, SAMPLE_AGE,
+    GUARD_LATE, FLANGE_AGE, LINE_BEAT_AGE, LOOP_LATE, DAEMON_BYTES, LINK_UP, CALIBRATION_EXPIRY,
+    CALIBRATION_OK, ALARMS_ACTIVE, ALARMS, DAEMON_LINKED, SNAPSHOT_AGE, CLIENTS, STORE_BYTES,
+    DISK_FREE, BUILD_INFO,
 )  # fmt: skip
 
 

@@ -23,13 +23,15 @@ def _waits() -> None:
 
 
 async def _held_by(work: Callable[[], None]) -> EventDict:
+    turns: list[float] = []
     with capture_logs() as lines:
-        watch = asyncio.create_task(watch_loop(0.001, 0.15))
+        watch = asyncio.create_task(watch_loop(turns.append, 0.001, 0.15))
         await asyncio.sleep(0)  # the watch begins its turn
         work()
         await asyncio.sleep(0.01)  # its turn ends before this: it was due while the work went on
         watch.cancel()
     (told,) = (line for line in lines if line["event"] == "event loop held")
+    assert max(turns) == pytest.approx(told["seconds"] - 0.001, abs=0.002)
     return told
 
 
@@ -47,7 +49,7 @@ async def test_a_loop_that_waits() -> None:
 
 async def test_a_loop_that_turns_is_not_mentioned() -> None:
     with capture_logs() as lines:
-        watch = asyncio.create_task(watch_loop(0.001, 60.0))
+        watch = asyncio.create_task(watch_loop(lambda _late_s: None, 0.001, 60.0))
         await asyncio.sleep(0.05)
         watch.cancel()
     assert lines == []

@@ -10,6 +10,7 @@ from cellctl.cell.time_limits import TimeLimits
 from cellctl.config import CellConfig
 from cellctl.daemon.app import until_told
 from cellctl.daemon.supervision import LinkMonitor, supervise
+from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors.force import GuardDied
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.line import LineTaskDied
@@ -178,7 +179,8 @@ class Port(PaperPort):
 async def supervised(rig: DaemonRig, stop: asyncio.Event) -> tuple[Port, asyncio.Task[None]]:
     port = Port()
     line = cast(PlcInterface, port)
-    work = supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive)
+    vitals = DaemonVitals(lambda: None)
+    work = supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive, vitals=vitals)
     task = asyncio.create_task(until_told(stop, work))
     await rig.until(lambda: port.beats > 0)
     return port, task

@@ -38,7 +38,7 @@ UID = os.getuid()
 class Page:
     def __init__(self, rig: DaemonRig) -> None:
         cell = rig.bench.as_cell
-        self.view = LiveView(cell, rig.unit, rig.arbiter)
+        self.view = LiveView(cell, rig.unit, rig.arbiter, lambda: {"loop_late_s": 0.01})
         self.reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive, self.view)
         self._keys = 0
         self._rig = rig
@@ -88,7 +88,10 @@ async def test_a_part_is_made_and_the_audit_log_names_person_panel_and_reason(
     assert (actor, action) == ("page:anna@panel-1", "start")
     assert detail["reason"] == "first part of the shift"
     assert detail["key"] == wanted.on_behalf.key
-    assert page.snapshot()["run"]["serial"] == "SAT-7"
+    shown = page.snapshot()
+    assert shown["run"]["serial"] == "SAT-7"
+    assert shown["daemon"] == {"loop_late_s": 0.01}
+    assert shown["guards"].keys() == rig.bench.cell.guards.keys()
 
 
 async def test_the_same_key_is_obeyed_once(rig: DaemonRig, page: Page) -> None:

@@ -47,7 +47,7 @@ ME = f"terminal:{pwd.getpwuid(UID).pw_name}"
 class Operator:
     def __init__(self, rig: DaemonRig) -> None:
         cell = rig.bench.as_cell
-        self._view = LiveView(cell, rig.unit, rig.arbiter)
+        self._view = LiveView(cell, rig.unit, rig.arbiter, dict)
         reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive, self._view)
         self._terminal = Terminal(
             cell.config, rig.unit.machine, rig.arbiter.submit, reporter, self._view

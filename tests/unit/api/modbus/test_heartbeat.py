@@ -32,6 +32,17 @@ async def test_a_value_that_never_changes_is_no_heartbeat(rig: Rig) -> None:
     assert not rig.watch.alive
 
 
+async def test_its_age_is_that_of_its_last_change(rig: Rig) -> None:
+    assert rig.watch.age_s is None
+    rig.watch.seen(5)
+    await asyncio.sleep(0.02)
+    rig.watch.seen(5)
+    assert rig.watch.age_s is not None
+    assert rig.watch.age_s >= 0.02
+    await asyncio.wait_for(rig.lost.wait(), 2)
+    assert rig.watch.age_s >= 0.1, "a lost one goes on to age"
+
+
 async def test_lost_once_and_back_on_change(rig: Rig) -> None:
     assert rig.watch.seen(5)
     assert not rig.watch.seen(6)

@@ -66,6 +66,11 @@ def test_the_newest_snapshot_is_served(page: Client, paper: PaperDaemon) -> None
     assert value(found, "force_newtons", sensor="wrist", axis="Fz") == 1.5
     assert value(found, "force_limit_newtons", sensor="wrist") == 50.0
     assert value(found, "sample_age_seconds", device="wrist") == 0.001
+    assert value(found, "guard_late_wakeups_total", sensor="wrist") == 3.0
+    assert value(found, "guard_flange_age_seconds", sensor="wrist") == 0.004
+    assert value(found, "line_beat_age_seconds") == 0.3
+    assert value(found, "daemon_loop_late_seconds") == 0.02
+    assert value(found, "daemon_resident_bytes") == 2e8
     assert value(found, "link_up", device="robots.main") == 1.0
     assert value(found, "link_up", device="force_sensors.wrist") == 0.0
     assert value(found, "alarms_active", reaction="abort") == 1.0

@@ -1,0 +1,44 @@
+"""Whether the daemon itself is well: for pages and for whoever watches many cells."""
+
+import os
+from collections import deque
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from cellctl.clock import now_s
+
+LOOKED_BACK_S = 15.0
+"""How often Prometheus usually asks: no late turn falls between two of its questions."""
+_STATM = Path("/proc/self/statm")
+_PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
+
+
+class DaemonVitals:
+    """Belongs to the event loop."""
+
+    def __init__(self, line_beat_age_s: Callable[[], float | None]) -> None:
+        """``line_beat_age_s``: since the counter of the line PLC has changed, None before."""
+        self._line_beat_age_s = line_beat_age_s
+        # Of each turn that was later than all that came after it; the first is the latest.
+        self._late: deque[tuple[float, float]] = deque()
+
+    def turn(self, late_s: float) -> None:
+        """The event loop took a turn so much later than it was due."""
+        while self._late and self._late[-1][1] <= late_s:
+            self._late.pop()
+        self._late.append((now_s(), late_s))
+        self._forget()
+
+    def snapshot(self) -> dict[str, Any]:
+        """From memory but for one line of the kernel's."""
+        self._forget()
+        return {
+            "loop_late_s": self._late[0][1] if self._late else None,
+            "line_beat_age_s": self._line_beat_age_s(),
+            "resident_bytes": int(_STATM.read_text("ascii").split()[1]) * _PAGE_BYTES,
+        }
+
+    def _forget(self) -> None:
+        while self._late and now_s() - self._late[0][0] > LOOKED_BACK_S:
+            self._late.popleft()
