@@ -17,9 +17,11 @@ _PAGE_BYTES = os.sysconf("SC_PAGE_SIZE")
 class DaemonVitals:
     """Belongs to the event loop."""
 
-    def __init__(self, line_beat_age_s: Callable[[], float | None]) -> None:
+    def __init__(
+        self, line_beat_age_s: Callable[[], float | None], clock: Callable[[], float] = now_s
+    ) -> None:
         """``line_beat_age_s``: since the counter of the line PLC has changed, None before."""
-        self._line_beat_age_s = line_beat_age_s
+        self._line_beat_age_s, self._clock = line_beat_age_s, clock
         # Of each turn that was later than all that came after it; the first is the latest.
         self._late: deque[tuple[float, float]] = deque()
 
@@ -27,7 +29,7 @@ class DaemonVitals:
         """The event loop took a turn so much later than it was due."""
         while self._late and self._late[-1][1] <= late_s:
             self._late.pop()
-        self._late.append((now_s(), late_s))
+        self._late.append((self._clock(), late_s))
         self._forget()
 
     def snapshot(self) -> dict[str, Any]:
@@ -40,5 +42,5 @@ class DaemonVitals:
         }
 
     def _forget(self) -> None:
-        while self._late and now_s() - self._late[0][0] > LOOKED_BACK_S:
+        while self._late and self._clock() - self._late[0][0] > LOOKED_BACK_S:
             self._late.popleft()

@@ -6,9 +6,8 @@ import sys
 import tempfile
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
-from enum import StrEnum
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, Literal
 
 from fastapi import APIRouter, Request
 from fastapi.responses import Response, StreamingResponse
@@ -26,12 +25,8 @@ takes some hundred MB of the disk until it is sent; the cell is not to wait for 
 _PIECE_BYTES = 2**18
 
 
-class Images(StrEnum):
-    """What becomes of the raw images; the words are those of ``cellctl runs export``."""
-
-    LOSSLESS = "lossless"
-    JPEG = "jpeg"
-    NONE = "none"
+Images = Literal["lossless", "jpeg", "none"]
+"""What becomes of the raw images, in the words of ``cellctl runs export``."""
 
 
 class RunExporter:
@@ -40,8 +35,8 @@ class RunExporter:
     They draw and compress, and the page would stand still meanwhile.
     """
 
-    def __init__(self, data_dir: Path) -> None:
-        self._data_dir = data_dir
+    def __init__(self, data_dir: Path, at_once: int = AT_ONCE) -> None:
+        self._data_dir, self._at_once = data_dir, at_once
         self._running = 0
 
     @asynccontextmanager
@@ -53,7 +48,7 @@ class RunExporter:
         Raises ``Problem``: 429 while others export, 504 after ``limit_s``, 500 with the words of
         the command.
         """
-        if self._running >= AT_ONCE:
+        if self._running >= self._at_once:
             raise Problem(429, "busy", "other exports are under way; try again soon").later(5.0)
         self._running += 1
         try:
@@ -96,12 +91,12 @@ async def report(request: Request, number: int, _visitor: Asked) -> Response:
 
 @router.get("/runs/{number}/recording", response_class=StreamingResponse)
 async def recording(
-    request: Request, number: int, _visitor: Asked, images: Images = Images.JPEG
+    request: Request, number: int, _visitor: Asked, images: Images = "jpeg"
 ) -> Response:
     """The whole run as one MCAP file for Foxglove, made now; ``images=lossless`` is much larger."""
     exporter = await _exporter(request, number)
     name = f"run-{number}.mcap"
-    form = ("--mcap", "--images", images.value)
+    form = ("--mcap", "--images", images)
     async with exporter.made(number, form, name, RECORDING_S) as folder:
         # The folder goes now, and the file with its last reader: also when whoever asked has gone
         # away in the middle, of which no handler is told.

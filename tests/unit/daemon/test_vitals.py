@@ -1,16 +1,6 @@
 """What the daemon tells of itself."""
 
-import pytest
-
-from cellctl.daemon import vitals
 from cellctl.daemon.vitals import LOOKED_BACK_S, DaemonVitals
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    now = [100.0]
-    monkeypatch.setattr(vitals, "now_s", lambda: now[0])
-    return now
 
 
 def late_s(told: DaemonVitals) -> float | None:
@@ -18,8 +8,9 @@ def late_s(told: DaemonVitals) -> float | None:
     return found
 
 
-def test_the_latest_turn_is_told_as_long_as_somebody_may_ask_for_it(clock: list[float]) -> None:
-    told = DaemonVitals(lambda: 0.4)
+def test_the_latest_turn_is_told_as_long_as_somebody_may_ask_for_it() -> None:
+    clock = [100.0]
+    told = DaemonVitals(lambda: 0.4, lambda: clock[0])
     assert late_s(told) is None, "before the first turn"
     for at_s, turn_s in ((100.0, 0.01), (101.0, 0.3), (102.0, 0.02), (103.0, 0.05), (104.0, 0.0)):
         clock[0] = at_s

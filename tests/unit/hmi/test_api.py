@@ -1,7 +1,6 @@
 """The HTTP API of a real process, asked as a browser, a program or a stranger asks."""
 
 import socket
-import tempfile
 import time
 from io import BytesIO
 from pathlib import Path
@@ -11,7 +10,6 @@ import pytest
 from mcap.reader import make_reader
 
 from cellctl.api.local_socket.messages import Failed, PlainCommand, Refused, StartCommand
-from cellctl.hmi.routes import exports
 from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.conftest import TOKEN
 from tests.unit.hmi.http_client import Client, Reply
@@ -249,26 +247,6 @@ def test_the_recording_of_a_run_is_a_file_for_viewers(page: Client) -> None:
     assert "/steps" in {channel.topic for channel in summary.channels.values()}
     problem(page.get("runs/99/recording"), 404, "fault-804")
     problem(page.get("runs/1/recording?images=big"), 422, "invalid")
-
-
-def test_two_export_and_a_third_waits(page: Client, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(exports, "AT_ONCE", 0)
-    busy = page.get("runs/1/report")
-    problem(busy, 429, "busy")
-    assert int(busy.headers["retry-after"]) >= 1
-
-
-def test_an_export_leaves_nothing_however_it_ends(
-    page: Client, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    folder = tmp_path / "exports"
-    folder.mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(folder))
-    assert page.get("runs/1/recording?images=none").status == 200
-    assert list(folder.iterdir()) == []
-    monkeypatch.setattr(exports, "REPORT_S", 0.01)
-    problem(page.get("runs/1/report"), 504, "export")
-    assert list(folder.iterdir()) == []
 
 
 def test_the_audit_log_is_for_those_who_maintain(page: Client) -> None:
