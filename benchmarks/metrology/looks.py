@@ -19,6 +19,7 @@ from rich.progress import track
 from rich.table import Table
 
 from benchmarks.metrology.drawn_conditions import DEVELOPED, HELD_BACK, Condition
+from benchmarks.metrology.drawn_hard import HARD
 from benchmarks.metrology.drawn_looks import LOOKS
 from benchmarks.metrology.drawn_scenes import Scene, drawn_scene
 from benchmarks.metrology.figures import HoleErrors
@@ -126,7 +127,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("-n", type=int, default=12, help="poses of each look")
     parser.add_argument("-m", type=int, default=36, help="poses under each condition")
-    parser.add_argument("--only", choices=("surfaces", "developed", "held-back"))
+    parser.add_argument("--only", choices=("surfaces", "developed", "hard", "held-back"))
     arguments = parser.parse_args()
     cv2.setNumThreads(1)
     good = True
@@ -134,6 +135,9 @@ def main() -> int:
         good &= surfaces(arguments.n)
     if arguments.only in (None, "developed"):
         table, _ = half("developed on", DEVELOPED, arguments.m)
+        Console(width=110).print(table)
+    if arguments.only == "hard":
+        table, _ = half("hard, developed on", HARD, arguments.m)
         Console(width=110).print(table)
     if arguments.only in (None, "held-back"):
         table, reached = half("held back", HELD_BACK, arguments.m)

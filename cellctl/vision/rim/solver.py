@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim.blur import SIZE as _BLUR_SIZE
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.noise import median
 from cellctl.vision.rim.problem import (
@@ -14,14 +15,19 @@ from cellctl.vision.rim.problem import (
     add_to_diagonal,
     initial_solution,
     relinearised,
+    shares_of_arcs,
     solve_light,
     with_unit_diagonal,
+    without_bad_arcs,
 )
-from cellctl.vision.rim.shape import RimPixels, RimShape
+from cellctl.vision.rim.shape import BLUR, FIRST_RATIO, RimPixels, RimShape
 
 _RADIUS_SIGMA = 0.005
 """Standard deviation of the radius about the drawing's, relative. It counts only where little of a
 rim stands out."""
+UNKNOWN_SIGMA = (0.3, 0.3, 0.5)
+"""Standard deviations of stretch and tail of the blur where no other rim tells them: a movement
+over three pixels behind a sharp lens stretches by 0.4, a lens out of focus has a tail of -0.7."""
 _WALL_SIGMAS = 4.0
 """Standard deviation of a wall's depth over its first guess. Where the lower edge of the wall is
 out of sight, nothing else holds its depth."""
@@ -36,6 +42,8 @@ _LOWER_EDGE = 0.03
 """Largest share of a movement of the wall's lower edge by which the rim follows it. A round that
 ended without regard to that edge left its way to the next ones: one fit in five then took seven to
 thirty rounds instead of one in twenty (24 pairs of images of three assemblies)."""
+_ARC_ROUNDS = 4
+"""Rounds in which the other arcs find their circle: each without the pull of what is left out."""
 _MAX_STEP_PX = 0.7
 """Longest step of a centre or a radius; see ``_moved``."""
 _MAX_DAMPING = 1e4
@@ -80,8 +88,9 @@ def single_image_problem(
     # The prior is the size on the drawing, not the located size: the edges that located the rim are
     # the same pixels, and would be counted twice.
     mean[2], sigma[2] = radius, _RADIUS_SIGMA * radius
+    sigma[BLUR] = [np.inf, *UNKNOWN_SIGMA]
     if start.wall_ratio is not None:
-        sigma[4] = _WALL_SIGMAS * start.wall_ratio
+        sigma[FIRST_RATIO] = _WALL_SIGMAS * start.wall_ratio
     view = RimView(pixels, start, np.eye(len(mean)))
     return RimProblem((view,), light, mean, sigma, across_lay)
 
@@ -90,7 +99,7 @@ def two_image_problem(
     pixels: tuple[RimPixels, RimPixels],
     starts: tuple[RimShape, RimShape],
     light: LightModel,
-    sigmas: tuple[float, float],
+    sigmas: tuple[Array, float],
     across_lay: Array | None,
 ) -> RimProblem:
     """Both images of a rim with a ring round it or a wall below; ``starts`` are the prior means.
@@ -99,21 +108,26 @@ def two_image_problem(
     cameras see the same ring in the same light: what they share is estimated once, so that the
     difference between the images, hence the depth, does not suffer from it.
 
-    ``sigmas`` are the standard deviations of the blur in px and of the ring or wall ratio. Joint
-    parameters: x, y left; x, y right; radius left; blur left and right; ratio.
+    ``sigmas`` are the standard deviations of ``Blur.vector`` and of the ring or wall ratio. Joint
+    parameters: x, y left; x, y right; radius left; blur left; blur right; ratio.
     """
     left, right = starts
     # Plane units are distances from the camera: the camera that is nearer sees a larger radius.
-    nearer, ratio = right.radius / left.radius, float(left.vector[4])
-    selections = np.zeros((2, 5, 8))
-    selections[0, range(5), [0, 1, 4, 5, 7]] = 1.0
-    selections[1, range(5), [2, 3, 4, 6, 7]] = [1.0, 1.0, nearer, 1.0, 1.0]
+    nearer, ratio = right.radius / left.radius, float(left.vector[FIRST_RATIO])
+    own = 5 + 2 * _BLUR_SIZE
+    selections = np.zeros((2, FIRST_RATIO + 1, own + 1))
+    blurs = [range(5 + index * _BLUR_SIZE, 5 + (index + 1) * _BLUR_SIZE) for index in (0, 1)]
+    for index, blur in enumerate(blurs):
+        selections[index, range(FIRST_RATIO + 1), [2 * index, 2 * index + 1, 4, *blur, own]] = 1.0
+    selections[1, 2, 4] = nearer
     if left.wall_ratio is not None:
-        selections[1, 4, 7] = nearer
-    mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, ratio])
+        selections[1, FIRST_RATIO, own] = nearer
+    mean = np.array(
+        [*left.centre, *right.centre, left.radius, *left.blur.vector, *right.blur.vector, ratio]
+    )
     sigma = np.full(len(mean), np.inf)
     sigma[4] = _RADIUS_SIGMA * left.radius
-    sigma[5:7], sigma[7] = sigmas
+    sigma[5:own], sigma[own] = np.tile(sigmas[0], 2), sigmas[1]
     outer = [float(np.percentile(part.grey, 90)) for part in pixels]
     views = tuple(
         RimView(part, shape, selection, grey / outer[0])
@@ -136,6 +150,23 @@ def refine(coarse: RimFit) -> RimFit:
     """A coarse fit brought to its end; the noise that it has found stays."""
     start = relinearised(coarse.problem, coarse.solution)
     return _minimised(coarse.problem, start, _FINE_PX, weighing_rounds=0)
+
+
+def judged_by_arcs(fit: RimFit) -> RimFit:
+    """The fit without the arcs that are not where the circle is; unchanged where all are.
+
+    The information of what is left out is missing in the covariance, too.
+    """
+    problem = fit.problem
+    if shares_of_arcs(problem, fit.solution).all():
+        return fit
+    trial = without_bad_arcs(problem, fit.solution)
+    for _ in range(_ARC_ROUNDS):
+        trial = without_bad_arcs(problem, _settle(problem, trial, _SETTLED_PX))
+    judged = _minimised(problem, trial, _FINE_PX, weighing_rounds=0)
+    # Where hardly a half agrees, the arcs may swing between two circles. Then all of them count,
+    # and their disagreement widens the covariance.
+    return judged if judged.converged else fit
 
 
 def _minimised(
@@ -204,7 +235,7 @@ def _lower_edge_px(problem: RimProblem, step: Array) -> float:
     moved = 0.0
     for view in problem.views:
         if view.model.wall_ratio is not None:
-            change = abs(float((view.selection @ step)[4]))
+            change = abs(float((view.selection @ step)[FIRST_RATIO]))
             foot_px = float(np.linalg.norm(view.pixels.points[:, 0])) / view.pixels.unit_px
             moved = max(moved, change * foot_px)
     return moved
