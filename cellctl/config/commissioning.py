@@ -56,7 +56,8 @@ def _implausible(cell: CellConfig, path: Path, found: list[ConfigIssue]) -> Iter
         return
     for index, recipe in enumerate(cell.recipes):
         key = f"recipes.{index}"
-        if not bad & {key, f"processes.{recipe.process}"}:
+        known = recipe.process in cell.processes
+        if known and not bad & {key, f"processes.{recipe.process}"}:
             yield from _implausible_recipe(cell, recipe, key, path)
 
 

@@ -223,11 +223,23 @@ def _settings(raw: Any, needed: set[str], found: list[ConfigIssue]) -> dict[str,
         except UnknownDriver as error:
             found.append(ConfigIssue(f"processes.{name}", name, error.detail, error.number))
             continue
+        if name not in raw and any(nearest(name, [other]) for other in raw):
+            continue  # misspelt, which is told above: its keys are there
         try:
             models[name] = validated(settings, raw.get(name, {}))
         except ValidationError as error:
-            found += model_issues(f"processes.{name}.", error, settings, raw.get(name, {}))
+            if name not in raw:
+                found.append(_without_table(name, error))
+                continue
+            found += model_issues(f"processes.{name}.", error, settings, raw[name])
     return models
+
+
+def _without_table(name: str, error: ValidationError) -> ConfigIssue:
+    """One finding for a table that is not there, in place of one for each of its keys."""
+    keys = ", ".join(str(one["loc"][0]) for one in error.errors())
+    allowed = f"a table [processes.{name}], which its recipes need, with at least {keys}"
+    return ConfigIssue(f"processes.{name}", "(missing)", allowed)
 
 
 class _WithConfig(Protocol):

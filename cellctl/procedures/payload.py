@@ -14,6 +14,7 @@ from cellctl.errors.force import NotSettled, SensorSilent
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import PoseRecord
 from cellctl.force.gravity.poses import IdentificationPose, PoseRole, plan_identification
+from cellctl.force.gravity.signs import reaction_check
 from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardSample, GuardSamples
 from cellctl.interfaces import Robot
@@ -73,6 +74,7 @@ async def identify_payload_on_cell(
         wrenches.append(wrench)
         roles.append(pose.role)
     result = _evaluate(rotations, wrenches, roles)
+    result = result.also((reaction_check(result.identification.rigid),))
     if arm.config.load is not None:
         rigid = result.identification.rigid
         weighed = rigid.mass_kg, rigid.centre_of_mass_m

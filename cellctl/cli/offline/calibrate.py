@@ -31,6 +31,7 @@ from cellctl.calibration.solvers.transfer.transfer_mistakes import require_unmis
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
 from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
+from cellctl.cli.offline.heads_of_cell import compare_heads
 from cellctl.cli.offline.invalidate import invalidate
 from cellctl.cli.offline.seal_calibrations import seal
 from cellctl.config import load_cell
@@ -127,7 +128,14 @@ def _compare_with_cell(file: Path, cell_file: Path, arm: ArmGeometry) -> None:
 
 
 @app.command("transfer")
-def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
+def transfer(
+    file: InFile,
+    out: OutFile = None,
+    picture: Picture = None,
+    cell: Annotated[
+        Path | None, typer.Option(help="Cell file: both heads have to be where it has them.")
+    ] = None,
+) -> None:
     """Heads I and II in the base by the target board (equations 1 to 3)."""
     data = read_input(file, TransferFile)
     before_head_1, before_head_2 = (data.placements(one) for one in (data.head_1, data.head_2))
@@ -136,6 +144,14 @@ def transfer(file: InFile, out: OutFile = None, picture: Picture = None) -> None
     _show("B_T_C1", result.base_T_c1)
     _show("B_T_C2", result.base_T_c2)
     _show("C1_T_C2", result.c1_T_c2)
+    places = {"head_1": result.base_T_c1.pose, "head_2": result.base_T_c2.pose}
+    missing = "give --cell" if cell is None else compare_heads(file, cell, places)
+    if missing is not None:
+        console_of_figures().print(
+            f"note: nothing here has checked which head is which: {missing}",
+            style="yellow",
+            markup=False,
+        )
     finish(result, result.warnings, out, picture, lambda: transfer_picture(result))
 
 

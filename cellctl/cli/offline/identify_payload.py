@@ -93,7 +93,11 @@ def _show(result: PayloadResult, console: Console) -> None:
     console.print(table)
     # Without this note a weight that points up would look like a mistake.
     if rigid.reads_reaction:
-        console.print("note: weight points up in this file, so it states reactions, not loads")
+        console.print(
+            "note: weight points up in this file, so it states reactions, not loads: in a cell a "
+            "contact would read as a pull. Set 'inverted' of the sensor's settings otherwise; "
+            "procedure 106 accepts no such sensor"
+        )
     for check in result.checks:
         console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
 

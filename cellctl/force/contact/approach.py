@@ -9,7 +9,6 @@ touch.
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import brentq
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.errors.force import ContactPlanInvalid
@@ -114,6 +113,10 @@ def approach_speed(
             f"no approach speed keeps the peak below {allowed_peak_n:.1f} N: touch threshold and "
             f"tare alone take {least_n:.1f} N"
         )
+    # Loaded here: it takes longer than all else that `cellctl check` loads for a mating, and most
+    # plans need it once.
+    from scipy.optimize import brentq
+
     # The root finder needs a change of sign, which a contact that is soft enough does not have.
     if peak_at(greatest_m_s, figures).peak_n <= allowed_peak_n:
         return peak_at(greatest_m_s, figures)

@@ -167,4 +167,16 @@ _PLUGGING = (
     ),
 )
 
-SINGLE_FIGURES = _DECK + _FORCES + _LOOP + _FIT + _PLUGGING
+_SENSOR = "force_sensors.force.flange_T_sensor"
+_PLACES = (
+    deck("flange_T_sensor = [0.0, 0.0, 60.0", "flange_T_sensor = [0.0, 0.0, 600.0", _SENSOR, "502"),
+    deck("flange_T_sensor = [0.0, 0.0, 60.0", "flange_T_sensor = [0.0, 0.0, -60.0", _SENSOR, "502"),
+    _antenna(
+        "flange_T_sensor = [0.0, 0.0, 30.0", "flange_T_sensor = [0.0, 0.0, 300.0", _SENSOR, "200"
+    ),
+    _pin("flange_T_sensor = [0.0, 0.0, 30.0", "flange_T_sensor = [0.0, 0.0, -30.0", _SENSOR, "200"),
+    _pin("[0.0, 2.0, 60.0]", "[0.0, 2.0, 600.0]", "recipes.0.load.com_in_sensor_mm", "most 170"),
+    _pin("[0.0, 2.0, 60.0]", "[0.0, 2.0, -60.0]", "recipes.0.load.com_in_sensor_mm", "least 0"),
+)
+
+SINGLE_FIGURES = _DECK + _FORCES + _LOOP + _FIT + _PLUGGING + _PLACES

@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from cellctl.cli import check
 from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems
+from cellctl.config.commissioning import examine_before_commissioning
 from cellctl.config.driver_settings import first_link_mm
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable
 
@@ -229,6 +230,20 @@ def test_devices_and_processes_belong_together(
     tmp_path: Path, old: str, new: str, key: str
 ) -> None:
     assert key in {problem.key for problem in problems(changed(tmp_path, one=(old, new)))}
+
+
+def test_a_misspelt_table_of_a_process_is_one_mistake(tmp_path: Path) -> None:
+    path = changed(tmp_path, a=("[processes.deck-to-frame]", "[processes.deck_to_frame]"))
+    (issue,) = examine_before_commissioning(path).errors
+    assert issue.key == "processes.deck_to_frame"
+    assert "did you mean 'deck-to-frame'?" in issue.allowed
+
+
+def test_a_missing_table_of_a_process_is_one_mistake_that_names_its_keys(tmp_path: Path) -> None:
+    path = changed(tmp_path, a=("[processes.deck-to-frame]", "[robots.main.other]"))
+    (issue,) = [one for one in problems(path) if one.key.startswith("processes")]
+    assert issue.key == "processes.deck-to-frame"
+    assert "base_frame_joints_deg, flange_T_target_board" in issue.allowed
 
 
 def test_check_says_which_recipes_the_cell_can_run() -> None:

@@ -36,6 +36,8 @@ _MIN_ANGLE_RAD = np.radians(10)
 """Least angle between the two directions that the three points span."""
 STILL_RAD = float(np.radians(0.1))
 """The flange keeps its orientation between the three orienting poses."""
+_LEAST_MOVED_M = 1e-3
+"""Of the flange about a tip that stays: far less than any tool is long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +143,13 @@ def _position(
         raise PosesNotDiverse(
             f"the flange turns too little or about one direction only "
             f"({np.degrees(np.arcsin(min(1.0, singular[-1]))):.1f}° rms, 10° needed)"
+        )
+    # Turned about its own middle the flange gives a tool without length, with residuals of zero.
+    moved_m = float(np.linalg.norm(places - places.mean(axis=0), axis=1).max())
+    if moved_m < _LEAST_MOVED_M:
+        raise PosesNotDiverse(
+            f"the flange stands within {moved_m / MM:.2f} mm in all touching poses and only turns: "
+            "no tip stays on a point so; turn it about the tip, or its positions were not read"
         )
     design = np.concatenate(
         [rotations.reshape(-1, 3), np.tile(-np.eye(3), (len(poses), 1))], axis=1

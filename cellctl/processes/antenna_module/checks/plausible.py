@@ -10,11 +10,12 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import bound_issues
 from cellctl.config.checks.flange_places import flange_place_issues
 from cellctl.config.checks.over_places import Over, over_place_issues
+from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, SOCKET_LOOK, TRAY_LOOK
+from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, FORCE, SOCKET_LOOK, TRAY_LOOK
 from cellctl.processes.antenna_module.settings import AntennaSettings
 
 _OVER = RigidTransform.from_rotation(Rotation.from_rotvec([3.141592653589793, 0.0, 0.0]))
@@ -28,6 +29,7 @@ def plausible_issues(
     settings, arm = cast(AntennaSettings, cell.processes[recipe.process]), recipe.device(ARM)
     where = f"processes.{recipe.process}"
     yield from bound_issues(arm_bounds(cell, arm, settings, where))
+    yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_plug))
     yield from bound_issues(board_bounds(cell, settings, where, folder))
     places = list(_places(cell, recipe, key))
     yield from places

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import Bound
 from cellctl.config.checks.plausible.loads import G_M_S2
+from cellctl.config.checks.sensor_places import sensor_bounds, straight_mm
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import FORCE
@@ -85,6 +86,12 @@ def _sensor(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[Bound]:
     )
     most_kg = sensor.free_force_n / G_M_S2
     yield Bound(f"{key}.load.mass_kg", load.mass_kg, why, most=most_kg)
+    yield from sensor_bounds(cell, name, recipe.flange_T_tip)
+    if (reach_mm := straight_mm(recipe.flange_T_tip)) is not None:
+        before_mm = reach_mm - sensor.flange_T_sensor[2]
+        why = f"z of the load: it hangs between the sensor and the tip, {before_mm:g} mm before it"
+        z_mm = load.com_in_sensor_mm[2]
+        yield Bound(f"{key}.load.com_in_sensor_mm", z_mm, why, least=0.0, most=before_mm)
     measuring = sensor.settings.get("range")
     if not isinstance(measuring, list) or len(measuring) != 6:
         return

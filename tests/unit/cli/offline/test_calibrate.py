@@ -17,6 +17,7 @@ from cellctl.cli.offline.calibrate import app
 from cellctl.errors.calibration import (
     BoardPoseInvalid,
     CalibrationCamerasSwapped,
+    PosesNotDiverse,
     RobotCameraMismatch,
     WrongBoard,
 )
@@ -253,6 +254,31 @@ def test_tables_of_a_transfer_that_were_exchanged_or_copied_are_named(tmp_path: 
     assert "one was copied" in str(result.exception)
 
 
+SAMPLE = Path(__file__).parents[4] / "config" / "samples" / "transfer.json"
+
+
+def test_exchanged_heads_of_a_transfer_are_named_with_the_cell_file(tmp_path: Path) -> None:
+    cell = ("--cell", SAMPLE.parents[1] / "deck.toml")
+    assert "which head is which" in call("transfer", "--in", SAMPLE).output
+    right = call("transfer", "--in", SAMPLE, *cell)
+    assert right.exit_code == 0, right.output
+    assert "which head is which" not in right.output
+    data = json.loads(SAMPLE.read_text())
+    data["head_1"], data["head_2"] = data["head_2"], data["head_1"]
+    result = call("transfer", "--in", save(tmp_path / "exchanged.json", data), *cell)
+    assert isinstance(result.exception, FileInvalid)
+    assert "head_1 and head_2 are exchanged?" in str(result.exception)
+
+
+def test_a_transfer_in_the_base_of_another_robot_is_named(tmp_path: Path) -> None:
+    data = json.loads(SAMPLE.read_text())
+    data["c_T_base"][0] += 1000.0
+    cell = ("--cell", SAMPLE.parents[1] / "deck.toml")
+    result = call("transfer", "--in", save(tmp_path / "elsewhere.json", data), *cell)
+    assert isinstance(result.exception, FileInvalid)
+    assert "is c_T_base of this robot" in str(result.exception)
+
+
 def tool_data() -> dict[str, Any]:
     rng = np.random.default_rng(0)
     return {
@@ -276,6 +302,15 @@ def test_inverted_poses_of_a_tool_are_named(tmp_path: Path) -> None:
     result = call("tool", "--in", save(tmp_path / "tool.json", data))
     assert "the poses are inverted (flange_T_base)?" in result.output
     assert "inverted" not in call("tool", "--in", save(tmp_path / "t.json", tool_data())).output
+
+
+def test_a_flange_that_only_turns_touches_nothing(tmp_path: Path) -> None:
+    data = tool_data()
+    for pose in data["touching"]:
+        pose[:3] = data["touching"][0][:3]
+    result = call("tool", "--in", save(tmp_path / "tool.json", data))
+    assert isinstance(result.exception, PosesNotDiverse)
+    assert "only turns" in str(result.exception)
 
 
 def test_orienting_poses_in_the_other_order_are_named(tmp_path: Path) -> None:

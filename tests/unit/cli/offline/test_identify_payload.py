@@ -95,6 +95,19 @@ def test_another_unit_is_named(
     assert result.exit_code == 3
 
 
+def test_one_axis_with_the_other_sign_is_not_accepted(csv_file: Path) -> None:
+    """Its weight is compensated all the same, and a contact would read as a pull."""
+    result = CliRunner().invoke(app, [str(rewritten(csv_file, {"fz_n": -1.0})), "--mass-kg", "200"])
+    assert result.exit_code == 3
+    assert "FAIL  share of the offset that fz with the other sign explains" in result.output
+
+
+def test_a_sensor_that_states_reactions_is_said_with_its_setting(csv_file: Path) -> None:
+    turned = rewritten(csv_file, dict.fromkeys(FORCES + MOMENTS, -1.0))
+    result = CliRunner().invoke(app, [str(turned), "--mass-kg", "200"])
+    assert "a contact would read as a pull. Set 'inverted'" in result.output
+
+
 def test_a_real_part_that_stands_first_is_named(csv_file: Path) -> None:
     result = CliRunner().invoke(app, [str(rewritten(csv_file, {}, "wxyz"))])
     assert result.exit_code != 0

@@ -11,6 +11,7 @@ from cellctl.force.gravity.payload_result import (
     mass_kg,
     payload_document,
 )
+from cellctl.force.gravity.signs import reaction_check
 from tests.rigs.payload_world import (
     LoadedSensor,
     compensation_of,
@@ -36,6 +37,7 @@ def test_rigid12_finds_the_load_of_an_ideal_sensor_exactly() -> None:
     np.testing.assert_allclose(found.torque_offset_n_m, sensor.offset[3:], atol=1e-6)
     assert found.inclination_u_rad == pytest.approx(0.0, abs=1e-9)
     assert not found.reads_reaction
+    assert reaction_check(found).passed
 
 
 @pytest.mark.parametrize("u_deg", [-2.0, 0.0, 1.5])
@@ -56,6 +58,7 @@ def test_a_sensor_that_states_reactions_is_recognised() -> None:
     turned = tumble(16, rng)
     found = fit_rigid12(turned, -LoadedSensor(offset=np.zeros(6)).read(turned, rng))
     assert found.reads_reaction
+    assert not reaction_check(found).passed
     assert found.mass_kg == pytest.approx(200.0)
     assert found.inclination_v_rad == pytest.approx(0.0, abs=1e-9)
     left = compensation_of(found).apply(-LoadedSensor(offset=np.zeros(6)).read(turned, rng), turned)

@@ -6,6 +6,7 @@ from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import bound_issues
+from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
@@ -18,6 +19,7 @@ from cellctl.processes.deck_to_frame.checks.plausible.station import station_iss
 from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_issues
 from cellctl.processes.deck_to_frame.checks.plausible.zones import zone_use_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.roles import FORCE
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.features.feature_file import read_features
 
@@ -40,6 +42,7 @@ def plausible_issues(
     yield from _thickness(recipe, key, folder)
     yield from limit_issues(recipe, key)
     yield from bound_issues(sigma_bounds(recipe, key))
+    yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_deck))
     yield from face_issues(recipe, key, read_features(folder / recipe.deck_features))
     loads = list(load_issues(cell, recipe, key))
     yield from loads
