@@ -102,6 +102,7 @@ class ContactLoop:
         self._take_wrenches()
         age_s, self._report = report.time_s - self._report.time_s, report
         force_age_s = self._clock() - self._filter.time_s
+        way_m = float(np.linalg.norm(tip[:3] - self.tip_command[:3]))
         self.tip_command = tip
         self.sample = self._sample(report)
         self.trail.note(tip)
@@ -117,6 +118,7 @@ class ContactLoop:
                 self._motion,
                 self._kind,
                 at_bound,
+                way_m / self.period_s,
             )
         )
         return self.sample

@@ -43,6 +43,8 @@ class ContactTick:
     kind: MotionKind
     at_bound: int = 0
     """Axes that had given way as far as they may."""
+    speed_m_s: float = 0.0
+    """Of the tip, as it was commanded: the way from the setpoint before in one period."""
 
 
 class TickObserver(ABC):

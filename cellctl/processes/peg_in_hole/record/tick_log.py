@@ -31,7 +31,6 @@ class TickLog(TickObserver):
     motions: list[tuple[int, MotionKind]] = field(default_factory=list)
     """Number and kind of the motion of each row."""
     begun_s: float | None = None
-    _sent_m: Array | None = None
 
     def take(self, tick: ContactTick) -> None:
         """See ``TickObserver``."""
@@ -44,19 +43,13 @@ class TickLog(TickObserver):
                 *(sample.task_position_tip_m * _M_TO_MM).tolist(),
                 *sample.force_n.tolist(),
                 *sample.moment_nm.tolist(),
-                self._speed_mm_s(tick),
+                tick.speed_m_s * _M_TO_MM,
                 float(tick.at_bound),
                 tick.age_s * _S_TO_MS,
                 tick.force_age_s * _S_TO_MS,
             )
         )
         self.motions.append((tick.motion, tick.kind))
-
-    def _speed_mm_s(self, tick: ContactTick) -> float:
-        sent_m, self._sent_m = self._sent_m, tick.tip_command[:3]
-        if sent_m is None or tick.age_s <= 0:
-            return 0.0
-        return float(np.linalg.norm(self._sent_m - sent_m)) * _M_TO_MM / tick.age_s
 
     def text(self) -> str:
         """As CSV with a head line; four decimals are finer than sensor and encoders."""

@@ -198,6 +198,16 @@ def test_late_ticks_never_make_a_longer_step() -> None:
     assert steps[19] == 0.0  # the tick after the late one sends the same target again
 
 
+def test_a_tick_tells_the_speed_that_was_commanded() -> None:
+    ticks = Ticks()
+    world = ElasticWorld(lambda _tip: np.zeros(6))
+    # Slower than every bound of a touch, and far enough to come to it.
+    run(contact(world, ticks=ticks).touch(DOWN, 0.05e-3, 8.0, 0.05e-3))
+    speeds = [tick.speed_m_s for tick in ticks.all]
+    assert max(speeds) == pytest.approx(0.05e-3)
+    assert speeds[-1] == pytest.approx(0.0, abs=1e-9)
+
+
 def test_a_tick_that_stays_away_ends_the_stream() -> None:
     world = ElasticWorld(wall(1e6), late_ticks={40: 13.0})
     with pytest.raises(StreamLate, match="52 ms between two ticks"):

@@ -22,10 +22,20 @@ def ticked(count: int) -> TickLog:
             np.array([0.1, 0.0, 0.0]),
             0.1,
         )
-        sent = np.array([0.0, 0.0, number * 1e-4, 0.0, 0.0, 0.0])
         at_bound = 2 if number > 16 else 0
         log.take(
-            ContactTick(sample, sent, 0.008, 0.001, Pace.STEP, 0, 1, MotionKind.FEED, at_bound)
+            ContactTick(
+                sample,
+                np.zeros(6),
+                0.008,
+                0.001,
+                Pace.STEP,
+                0,
+                1,
+                MotionKind.FEED,
+                at_bound,
+                0.0125,
+            )
         )
     return log
 
@@ -37,7 +47,7 @@ def test_what_was_felt_is_in_the_table() -> None:
     assert set(values) == {*COLUMNS, *LOOP_COLUMNS}
     assert values["time_s"][-1] == pytest.approx(0.152)
     assert values["depth_mm"][-1] == pytest.approx(1.9)
-    assert values["speed_mm_s"].tolist() == [0.0, *[12.5] * 19]
+    assert values["speed_mm_s"].tolist() == [12.5] * 20
     assert values["at_bound"].sum() == 6
     assert set(values["age_ms"]) == {8.0}
     assert set(values["force_age_ms"]) == {1.0}
