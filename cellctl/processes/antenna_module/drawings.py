@@ -3,6 +3,9 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
+from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
 from cellctl.processes.antenna_module.connector.marks import Marks, read_marks
 from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
@@ -32,8 +35,26 @@ def read_drawings(recipe: AntennaRecipe, folder: Path) -> Drawings:
             raise ConnectorFileInvalid(f"{key}: {connector.name} has {connector.kind}, not {kind}")
     if set(plug.contacts) != set(socket.contacts):
         raise ConnectorFileInvalid(f"contacts of {plug.name} and {socket.name} are not the same")
+    _require_fit(plug, socket)
     gripper = read_marks(folder / recipe.gripper_marks)
     return Drawings(plug, socket, gripper, read_marks(folder / recipe.module_top))
+
+
+def _require_fit(plug: Connector, socket: Connector) -> None:
+    """Distances between contacts of the same names are equal, seen from either side."""
+    order = [socket.contacts.index(name) for name in plug.contacts]
+    wanted, found = _distances(plug.positions_m), _distances(socket.positions_m[order])
+    apart_m = float(np.abs(wanted - found).max())
+    if apart_m > socket.capture_m:
+        raise ConnectorFileInvalid(
+            f"contacts of {plug.name} and {socket.name} do not fit each other: two of them are "
+            f"{apart_m / MM:.2f} mm farther apart in one than in the other"
+        )
+
+
+def _distances(positions_m: Array) -> Array:
+    apart_m: Array = np.linalg.norm(positions_m[:, None] - positions_m[None], axis=2)
+    return apart_m
 
 
 @dataclass(frozen=True, slots=True, eq=False)

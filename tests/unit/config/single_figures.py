@@ -178,5 +178,45 @@ _PLACES = (
     _pin("[0.0, 2.0, 60.0]", "[0.0, 2.0, 600.0]", "recipes.0.load.com_in_sensor_mm", "most 170"),
     _pin("[0.0, 2.0, 60.0]", "[0.0, 2.0, -60.0]", "recipes.0.load.com_in_sensor_mm", "least 0"),
 )
+_DRAWINGS = (
+    Mistake(
+        "antenna.toml",
+        'socket = "connectors/micro-d-15-holes.toml"',
+        'socket = "connectors/d-sub-15-holes.toml"',
+        "recipes.0",
+        "drawings that can be used",
+        at_the_other=True,
+    ),
+    _antenna(
+        'module_top = "connectors/module-top.toml"',
+        'module_top = "connectors/gripper.toml"',
+        "recipes.0.module_top",
+        "gripper_marks names this file",
+    ),
+    _antenna(
+        'plate_below = "connectors/reference-plate-below.toml"',
+        'plate_below = "connectors/reference-plate-above.toml"',
+        f"{_PLUG}.reference.plate_below",
+        "plate_above names this file",
+    ),
+    _antenna(
+        "module_mass_kg = 0.25",
+        "seated_limit_mm = 5.0\nmodule_mass_kg = 0.25",
+        "recipes.0.seated_limit_mm",
+        "capture_mm",
+    ),
+    _antenna(
+        "module_mass_kg = 0.25",
+        "worst_contact_mm = 0.9\nmodule_mass_kg = 0.25",
+        "recipes.0.worst_contact_mm",
+        "capture_mm",
+    ),
+    _pin(
+        "force_sigma_n = 0.1",
+        "force_sigma_n = 0.1\npanel_shift_mm = 5.0",
+        f"{_PEG}.panel_shift_mm",
+        "nothing is compared",
+    ),
+)
 
-SINGLE_FIGURES = _DECK + _FORCES + _LOOP + _FIT + _PLUGGING + _PLACES
+SINGLE_FIGURES = _DECK + _FORCES + _LOOP + _FIT + _PLUGGING + _PLACES + _DRAWINGS

@@ -11,6 +11,43 @@ def _real(old: str, new: str, key: str, said: str) -> Mistake:
 
 UNDECIDED = (
     Undecided(
+        deck(
+            "max_iterations = 10",
+            'max_iterations = 10\nmethod = "paper"',
+            "recipes.0.pose_correction.method",
+            "for comparison",
+        ),
+        "the paper's method: a comparison may be meant",
+    ),
+    Undecided(
+        deck(
+            "target_force_n = 35.0",
+            "target_force_n = 35.0\nmax_past_contact_mm = 2.0",
+            "recipes.0.mating.max_past_contact_mm",
+            "would press with 2000 N",
+        ),
+        "a longer way past the contact: a soft joint may need it",
+    ),
+    Undecided(
+        deck(
+            "target_force_n = 35.0",
+            "target_force_n = 35.0\ncontact_window_mm = 3.0",
+            "recipes.0.mating.contact_window_mm",
+            "something between",
+        ),
+        "a wide window of contact: thick seals exist",
+    ),
+    Undecided(
+        Mistake(
+            "insertion-pin.toml",
+            "grip_n = 60.0",
+            "",
+            "recipes.0.seat.grip_n",
+            "measure at which force",
+        ),
+        "no grip force: it is measured at commissioning",
+    ),
+    Undecided(
         drawn(
             _BOTH,
             "position_mm = [-400.0, -230.0,",

@@ -13,6 +13,7 @@ from cellctl.config.checks.over_places import Over, over_place_issues
 from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.processes.antenna_module.checks.drawn import contact_bounds, one_file_twice
 from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, FORCE, SOCKET_LOOK, TRAY_LOOK
@@ -28,6 +29,8 @@ def plausible_issues(
     """Called with a recipe in which nothing else is wrong."""
     settings, arm = cast(AntennaSettings, cell.processes[recipe.process]), recipe.device(ARM)
     where = f"processes.{recipe.process}"
+    yield from one_file_twice(recipe, key, settings.reference, where)
+    yield from bound_issues(contact_bounds(recipe, key, folder))
     yield from bound_issues(arm_bounds(cell, arm, settings, where))
     yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_plug))
     yield from bound_issues(board_bounds(cell, settings, where, folder))

@@ -38,6 +38,9 @@ def loop_bounds(
     why = "a tenth of repeatability_mm: heights are read from the same joints"
     least_mm = _LEAST_HEIGHT_SHARE * repeats_mm
     yield Bound(f"{where}.height_sigma_mm", settings.height_sigma_mm, why, least=least_mm)
+    why = "height_uncertainty_mm: beyond it the face is not found at all, so nothing is compared"
+    most_mm = recipe.base_T_hole.height_uncertainty_mm
+    yield Bound(f"{where}.panel_shift_mm", settings.panel_shift_mm, why, most=most_mm)
     measuring = cell.force_sensors[recipe.device(FORCE)].settings.get("range")
     if isinstance(measuring, list) and len(measuring) == 6:
         least_n = _LEAST_RANGE_SHARE * min(measuring[:3])

@@ -33,4 +33,7 @@ def recipe_remarks(
             f"arrives within uncertainty_deg = {fit.keys.uncertainty_deg:g}; right if it is so"
         )
         yield ConfigIssue(f"{key}.fit.keys.window_deg", f"{fit.keys.window_deg:g}", said)
+    if recipe.seat.grip_n is None:
+        said = "nothing is called inserted without it: measure at which force the part slips"
+        yield ConfigIssue(f"{key}.seat.grip_n", "(missing)", said)
     yield from soft_arm(cell, recipe, settings, folder)

@@ -24,6 +24,7 @@ from cellctl.vision.registration.rigid_fit import on_a_line
 _NEARLY = 0.05
 """Three holes are nearly on a line when they spread across it by less than this share of their
 spread along it."""
+_USUAL_PAST_MM, _USUAL_WINDOW_MM = 0.5, 1.0
 
 
 def recipe_remarks(
@@ -32,6 +33,8 @@ def recipe_remarks(
     """Called with a file that is good."""
     for drawing in read_drawings(recipe, key, folder):
         yield from _lines(drawing)
+    yield from _compared(recipe, key)
+    yield from _late(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
     yield from _taught_again(cell, recipe, folder)
@@ -46,6 +49,33 @@ def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
         if len(holes) >= 3 and on_a_line(places_m, _NEARLY):
             said = "these holes lie on one line; right if the drawing has them so"
             yield drawing.issue(name, str(list(holes)), said)
+
+
+def _compared(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
+    """The paper's ways, which are there to be compared with."""
+    for name in ("rule", "method"):
+        if getattr(recipe.pose_correction, name) == "paper":
+            said = "of the paper, for comparison: it does not hold the thresholds of a production"
+            yield ConfigIssue(f"{key}.pose_correction.{name}", "'paper'", said)
+
+
+def _late(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
+    """Contacts that may come very early, or be pressed far beyond."""
+    mating = recipe.mating
+    presses_n = mating.max_past_contact_mm * mating.stiffness_n_per_mm
+    if mating.max_past_contact_mm > _USUAL_PAST_MM:
+        said = (
+            f"if no stop were obeyed the arm would press with {presses_n:.0f} N here; the usual "
+            f"{_USUAL_PAST_MM:g} mm are enough where the contact is known to its window"
+        )
+        value = f"{mating.max_past_contact_mm:g}"
+        yield ConfigIssue(f"{key}.mating.max_past_contact_mm", value, said)
+    if mating.contact_window_mm > _USUAL_WINDOW_MM:
+        said = (
+            f"a contact that comes so early is another part or something between: more than "
+            f"{_USUAL_WINDOW_MM:g} mm is seldom meant"
+        )
+        yield ConfigIssue(f"{key}.mating.contact_window_mm", f"{mating.contact_window_mm:g}", said)
 
 
 def _board(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[ConfigIssue]:
