@@ -20,6 +20,7 @@ from cellctl.config.checks.units import unit_issues
 from cellctl.config.checks.zones import zone_issues
 from cellctl.config.document.findings import model_issues, shorten, validated
 from cellctl.config.document.lines import key_lines, line_of
+from cellctl.config.document.other_files import other_kind
 from cellctl.config.document.toml_hints import toml_hint
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.process_definition import ProcessDefinition, process_definition
@@ -60,6 +61,8 @@ def examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None, dict[str,
     """Every error without its line, the cell where its keys could be read, and the line of every
     key."""
     text, raw = _read_toml(path)
+    if kind := other_kind(raw):
+        raise ConfigUnreadable(f"{path}: this is {kind}; needed is the cell file beside it")
     lines = key_lines(text)
     found, cell = _issues(raw, path.parent)
     return found, cell, lines

@@ -102,14 +102,15 @@ def base_frame(
     warnings = result.warnings + ((f"{hint}? Then every check passes",) if hint else ())
     _show("C_T_B", result.c_T_base)
     # A1 is found as a line, on which d1 alone says where the base is: no stop can contradict it.
-    console_of_figures().print(
-        f"note: nothing here has checked d1_mm = {arm.d1_m / MM:g}; a wrong one moves the base "
-        "along A1 by as much. Compare it with the data sheet and with the cell file",
-        style="yellow",
-        markup=False,
-    )
     if cell is not None:
         _compare_with_cell(file, cell, arm)
+    else:
+        console_of_figures().print(
+            f"note: nothing here has checked d1_mm = {arm.d1_m / MM:g}; a wrong one moves the base "
+            "along A1 by as much. Compare it with the data sheet, and give --cell",
+            style="yellow",
+            markup=False,
+        )
     finish(result, warnings, out, picture, lambda: base_frame_picture(result))
 
 

@@ -89,3 +89,9 @@ def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(name: str)
     )
     assert "good." in out, out
     assert heavy == ""
+
+
+@pytest.mark.parametrize("name", ["antenna", "insertion-pin", "small"])
+def test_only_the_plan_of_a_mating_loads_what_finds_roots(name: str) -> None:
+    heavy = ("scipy.optimize", "scipy.signal", "scipy.stats")
+    assert loaded_by(f"check config/{name}.toml", heavy)[1] == ""

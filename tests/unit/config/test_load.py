@@ -163,6 +163,23 @@ def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None) ->
         problems(path)
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("features/deck.toml", "the drawing of a part"),
+        ("connectors/micro-d-15-pins.toml", "the drawing of a connector"),
+        ("connectors/gripper.toml", "the drawing of marks"),
+        ("deck.model.toml", "the model of a cell"),
+        ("deck.scenario.toml", "the scenario of a fake cell"),
+        ("antenna.scenario.toml", "the scenario of a fake cell"),
+        ("insertion-pin.model.toml", "the model of a cell"),
+    ],
+)
+def test_another_file_of_the_cell_is_named_as_what_it_is(name: str, said: str) -> None:
+    with pytest.raises(ConfigUnreadable, match=said):
+        problems(CONFIG / name)
+
+
 def test_recipe_numbers_must_differ(tmp_path: Path) -> None:
     text = (CONFIG / "deck.toml").read_text()
     once = text[text.index("[[recipes]]") :]
