@@ -63,6 +63,21 @@ class RecordNotWritten(RecordsError):
     remedy = "Repair the disk, then restart the daemon: after a failed write nothing is retried."
 
 
+class StoreLocked(RecordsError):
+    """Another program held the lock of the run store for too long; nothing was written."""
+
+    number = 825
+    text = "Another program keeps the run store locked"
+    cause = (
+        "A program that writes to store.sqlite has not finished, such as a database browser, a "
+        "backup or a suspended cellctl command."
+    )
+    remedy = (
+        "End that program (`fuser store.sqlite` names it), then Clear, or give the command again. "
+        "The store is sound and takes the next record."
+    )
+
+
 class RunUnknown(RecordsError):
     """There is no such run."""
 

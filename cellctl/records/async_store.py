@@ -8,6 +8,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from cellctl import log
 from cellctl.errors.records import RecordNotWritten, RecordsError
+from cellctl.records.database.sessions import LOCK_WAIT_S
 from cellctl.records.files.raw_images import (
     MEDIA_TYPE,
     GreyImage,
@@ -27,13 +28,15 @@ R = TypeVar("R")
 class AsyncRunStore:
     """Awaitable access to the run store; faults of the store come back unchanged."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, *, lock_wait_s: float = LOCK_WAIT_S) -> None:
         """Open the store; raises ``StoreUnavailable``, ``StoreTooNew``."""
         # One thread: SQLite takes one writer, and records must reach the disk in the order in which
         # they were given.
         self._thread = ThreadPoolExecutor(max_workers=1, thread_name_prefix="run-store")
         try:
-            self._store: RunStore = self._thread.submit(RunStore, path).result()
+            self._store: RunStore = self._thread.submit(
+                RunStore, path, lock_wait_s=lock_wait_s
+            ).result()
         except BaseException:
             self._thread.shutdown()
             raise

@@ -15,7 +15,7 @@ from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.records.database import ledger, reading, rows, schema, sealed
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
-from cellctl.records.database.sessions import Database
+from cellctl.records.database.sessions import LOCK_WAIT_S, Database
 from cellctl.records.entered.gauges import require_gauge, require_plausible
 from cellctl.records.entries import (
     Alarm,
@@ -40,15 +40,20 @@ _LINE_SEQ = "line_seq"
 class RunStore:
     """One writer: the daemon. Commands of the operator may add gauge results beside it."""
 
-    def __init__(self, path: Path, *, create: bool = True) -> None:
+    def __init__(
+        self, path: Path, *, create: bool = True, lock_wait_s: float = LOCK_WAIT_S
+    ) -> None:
         """Open the store in a folder, migrate an older one, or create it.
 
-        Raises ``StoreUnavailable``, ``StoreTooNew``; ``StoreHeldByEarlierVersion`` where a daemon
+        ``lock_wait_s`` is how long a write waits for another program that is writing. Raises
+        ``StoreUnavailable``, ``StoreTooNew``; ``StoreHeldByEarlierVersion`` where a daemon
         works with an older one.
         """
         self.path = path
         self._ownership = Ownership(path / "owner.lock")
-        self._database = Database(path / FILE, create=create, alone=self._ownership.alone)
+        self._database = Database(
+            path / FILE, create=create, alone=self._ownership.alone, lock_wait_s=lock_wait_s
+        )
         self.artefacts = ArtefactFolder(path / "files")
         self._unfinished = UnfinishedRecordings(path / "unfinished")
 

@@ -16,11 +16,17 @@ from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
 from cellctl.atomic_files import make_folder_durably
-from cellctl.errors.records import RecordNotWritten, RunUnknown, StoreTooNew, StoreUnavailable
+from cellctl.errors.records import (
+    RecordNotWritten,
+    RunUnknown,
+    StoreLocked,
+    StoreTooNew,
+    StoreUnavailable,
+)
 from cellctl.records.database import migration
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
-_BUSY_TIMEOUT_S = 5
+LOCK_WAIT_S = 5.0
 """Longest wait of SQLite for another process that is writing, such as a command that enters a
 gauge; a write takes milliseconds."""
 _READS = "store_reads"
@@ -30,7 +36,12 @@ class Database:
     """Sessions on one file. Used from one thread at a time."""
 
     def __init__(
-        self, file: Path, *, create: bool, alone: Callable[[], AbstractContextManager[None]]
+        self,
+        file: Path,
+        *,
+        create: bool,
+        alone: Callable[[], AbstractContextManager[None]],
+        lock_wait_s: float = LOCK_WAIT_S,
     ) -> None:
         """Open, or create if allowed; an older store is migrated (see ``migration``).
 
@@ -41,7 +52,7 @@ class Database:
         self._failed: str | None = None
         if not (create or file.exists()):
             raise StoreUnavailable(f"there is no {file}")
-        self._engine = _engine(file)
+        self._engine = _engine(file, lock_wait_s)
         try:
             make_folder_durably(file.parent)
             # A store of today is opened without a write, so without waiting for a writer's lock.
@@ -73,7 +84,8 @@ class Database:
     def write(self) -> Iterator[Session]:
         """A transaction that is on the disk when the block ends.
 
-        Raises ``RecordNotWritten`` when it is not, and from then on always; ``RunUnknown`` when it
+        Raises ``RecordNotWritten`` when it is not, and from then on always; ``StoreLocked`` when
+        another program was writing all the time, and nothing was written; ``RunUnknown`` when it
         refers to a run that does not exist; ``StoreTooNew`` when a later version has migrated the
         store since it was opened.
         """
@@ -91,6 +103,10 @@ class Database:
             fault = RunUnknown if "FOREIGN KEY" in _reason(error) else RecordNotWritten
             raise fault(_reason(error)) from error
         except DBAPIError as error:
+            # SQLite refuses a transaction under somebody else's lock before it writes a byte, so
+            # this says nothing about the disk either.
+            if _is_locked(error):
+                raise StoreLocked(_reason(error)) from error
             # A second fsync may report success for data that are lost (docs/decisions/0011), so
             # nothing is written until the store has been opened anew.
             self._failed = _reason(error)
@@ -106,9 +122,9 @@ class Database:
             raise StoreUnavailable(_reason(error)) from error
 
 
-def _engine(file: Path) -> Engine:
+def _engine(file: Path, lock_wait_s: float) -> Engine:
     engine = create_engine(
-        f"sqlite:///{file}", connect_args={"timeout": _BUSY_TIMEOUT_S, "check_same_thread": False}
+        f"sqlite:///{file}", connect_args={"timeout": lock_wait_s, "check_same_thread": False}
     )
 
     @event.listens_for(engine, "connect")
@@ -128,6 +144,13 @@ def _engine(file: Path) -> Engine:
         connection.exec_driver_sql("BEGIN" if reads else "BEGIN IMMEDIATE")
 
     return engine
+
+
+def _is_locked(error: DBAPIError) -> bool:
+    """Whether another connection held the lock; SQLite has several codes for where it met it."""
+    code: int = getattr(error.orig, "sqlite_errorcode", sqlite3.SQLITE_OK)
+    # The low byte is the kind of error, the rest says more of it (sqlite.org/rescode.html).
+    return code & 0xFF == sqlite3.SQLITE_BUSY
 
 
 def _reason(error: Exception) -> str:
