@@ -2,14 +2,13 @@
 
 import asyncio
 import logging
-import math
 from collections.abc import Awaitable, Callable
 from dataclasses import replace
 from typing import Any, TypeVar
 
 import numpy as np
 
-from cellctl.errors.camera import CameraFeatureRefused, CamerasNotTogether, ImagesDamaged
+from cellctl.errors.camera import CameraFeatureRefused, ImagesDamaged
 from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, ReplyTimeout
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.device import Device
@@ -31,11 +30,10 @@ from drivers.camera.gige.protocol import (
     SetExposureRequest,
 )
 from drivers.camera.gige.running_mean import RunningMean
+from drivers.camera.gige.simultaneity import Simultaneity
 
 _PATIENCE_S = 2.0
 """What the process may take beyond the time-outs of its own before it counts as hung."""
-_CLOCK_DRIFT = 200e-6
-"""Drift of two quartz clocks against each other; makers state 50 to 100 ppm for each."""
 T = TypeVar("T")
 _log = logging.getLogger(__name__)
 
@@ -49,6 +47,10 @@ class GigeDevice(Device):
         self._cameras = cameras
         self._library = LibraryProcess(name)
         self._turn = asyncio.Lock()
+        self._burst = asyncio.Lock()
+        """Held from the first image of a burst to its last one, and while the exposure changes.
+
+        A cancelled burst gives it back at once; a request that was sent keeps its turn."""
         self._exposure_s: float | None = None
         """What was set since the connection was asked for, in place of the settings'."""
         self._opened: tuple[OpenedCamera, ...] = ()
@@ -70,7 +72,7 @@ class GigeDevice(Device):
 
     async def set_exposure(self, exposure_s: float) -> float:
         """Set the exposure of all cameras; it is kept when a lost camera is opened anew, until
-        ``disconnect``."""
+        ``disconnect``. Waits for a burst that is being taken."""
 
         async def change() -> float:
             answer, _ = await self._asked(SetExposureRequest(exposure_s), _PATIENCE_S)
@@ -80,7 +82,9 @@ class GigeDevice(Device):
             self._exposure_s = answer.cameras[0].exposure_s or exposure_s
             return self._exposure_s
 
-        return await self._in_turn(change)
+        # The images of a burst are averaged, and its record names one exposure for all of them.
+        async with self._burst:
+            return await self._in_turn(change)
 
     async def _exposed(self) -> tuple[Grabbed, list[Block]]:
         async def grab() -> tuple[Grabbed, list[Block]]:
@@ -207,19 +211,23 @@ class GigeCamera(GigeDevice, Camera):
 
     async def grab(self) -> CameraImage:
         """Expose now; damaged images are taken again as often as the settings allow."""
-        mean: RunningMean[Any] = RunningMean()
-        taken_again = 0
-        for _ in range(self._settings.burst):
-            grabbed, (data,) = await self._exposed()
-            (image,) = grabbed.images
-            taken_again += grabbed.taken_again
-            pixels, pixel_format = self._decoded(image, data)
-            bits = bits_of(image.pixel_format)
-            if self._grey and pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
-                pixels, pixel_format, bits = grey(pixels, pixel_format, bits), PixelFormat.MONO8, 8
-            mean.add(pixels)
-        record = self._record(0, image, bits, taken_again)
-        return CameraImage(mean.pixels(), pixel_format, image.time_s, self._next_frame(), record)
+        async with self._burst:
+            mean: RunningMean[Any] = RunningMean()
+            taken_again = 0
+            for _ in range(self._settings.burst):
+                grabbed, (data,) = await self._exposed()
+                (image,) = grabbed.images
+                taken_again += grabbed.taken_again
+                pixels, pixel_format = self._decoded(image, data)
+                bits = bits_of(image.pixel_format)
+                if self._grey and pixel_format in (PixelFormat.RGB8, PixelFormat.RGB16):
+                    pixels = grey(pixels, pixel_format, bits)
+                    pixel_format, bits = PixelFormat.MONO8, 8
+                mean.add(pixels)
+            record = self._record(0, image, bits, taken_again)
+            return CameraImage(
+                mean.pixels(), pixel_format, image.time_s, self._next_frame(), record
+            )
 
 
 class GigeHead(GigeDevice, StereoCamera):
@@ -230,64 +238,27 @@ class GigeHead(GigeDevice, StereoCamera):
     def __init__(self, name: str, config: GigeHeadConfig) -> None:
         left = CameraSetup(config.left, config.of_left())
         super().__init__(name, (left, CameraSetup(config.right, config.of_right())))
-        self._max_difference_s = config.max_difference_s
-        self._clocks_agree = config.clocks_agree
-        self._ahead: tuple[float, float] | None = None
-        """What the last pair said: monotonic time, and how far the clock of the left camera was
-        before the right one's."""
+        self._simultaneity = Simultaneity(name, config)
 
     def _forget(self) -> None:
-        self._ahead = None  # clocks begin anew with the power
+        self._simultaneity.forget()  # clocks begin anew with the power
 
     async def grab(self) -> StereoPair:
         """Expose both cameras now."""
-        left: RunningMean[np.uint8] = RunningMean()
-        right: RunningMean[np.uint8] = RunningMean()
-        taken_again = 0
-        for _ in range(self._settings.burst):
-            grabbed, blocks = await self._exposed()
-            images = grabbed.images
-            taken_again += grabbed.taken_again
-            self._require_together(images[0], images[1])
-            for mean, image, block in zip((left, right), images, blocks, strict=True):
-                pixels, kind = self._decoded(image, block)
-                mean.add(grey(pixels, kind, bits_of(image.pixel_format)))
-        records = tuple(
-            self._record(number, image, 8, taken_again) for number, image in enumerate(images)
-        )
-        time_s = images[0].time_s
-        return StereoPair(left.pixels(), right.pixels(), time_s, self._next_frame(), records)
-
-    def _require_together(self, left: SentImage, right: SentImage) -> None:
-        """Raise ``CamerasNotTogether``: what moved in between would be in one image only."""
-        apart_s = self._apart_s(left, right)
-        ahead_s = (left.device_time_ns - right.device_time_ns) * 1e-9
-        before, self._ahead = self._ahead, (left.time_s, ahead_s)
-        if self._clocks_agree:
-            # Of cameras that run freely the clocks know better than this PC.
-            freely = self._settings.trigger == "none"
-            apart_s = abs(ahead_s) if freely else max(apart_s, abs(ahead_s))
-        elif (
-            self._settings.trigger != "none"
-            and before is not None
-            and left.device_time_ns
-            and right.device_time_ns
-        ):
-            # Each camera has a clock of its own, and only the change of their difference says
-            # something; clocks drift apart by themselves meanwhile.
-            change_s = abs(ahead_s - before[1])
-            apart_s = max(apart_s, change_s - _CLOCK_DRIFT * (left.time_s - before[0]))
-        if apart_s > self._max_difference_s:
-            self._ahead = None
-            raise CamerasNotTogether(
-                f"{self.name}: {apart_s * 1e3:.1f} ms apart, allowed "
-                f"{self._max_difference_s * 1e3:.1f} ms"
+        async with self._burst:
+            left: RunningMean[np.uint8] = RunningMean()
+            right: RunningMean[np.uint8] = RunningMean()
+            taken_again = 0
+            for _ in range(self._settings.burst):
+                grabbed, blocks = await self._exposed()
+                images = grabbed.images
+                taken_again += grabbed.taken_again
+                self._simultaneity.require(images[0], images[1])
+                for mean, image, block in zip((left, right), images, blocks, strict=True):
+                    pixels, kind = self._decoded(image, block)
+                    mean.add(grey(pixels, kind, bits_of(image.pixel_format)))
+            records = tuple(
+                self._record(number, image, 8, taken_again) for number, image in enumerate(images)
             )
-
-    def _apart_s(self, left: SentImage, right: SentImage) -> float:
-        """What this PC knows of the time between both exposures."""
-        if self._settings.trigger == "none":
-            # Both were exposed at some time between the request and the last image.
-            return max(left.time_s, right.time_s) - min(left.trigger_s, right.trigger_s)
-        by_wire = math.isnan(right.trigger_s)
-        return 0.0 if by_wire else right.trigger_s - left.trigger_s
+            time_s = images[0].time_s
+            return StereoPair(left.pixels(), right.pixels(), time_s, self._next_frame(), records)

@@ -123,3 +123,31 @@ async def test_a_head_takes_means_too(producer: Path, fakes: FakeCameras) -> Non
         frames = [expected_image(n, 64, 48, "Mono8", camera=number).astype(float) for n in (1, 2)]
         assert image.dtype == np.uint8
         assert np.abs(image - np.mean(frames, axis=0)).max() <= 0.5
+
+
+async def test_an_exposure_is_not_changed_within_the_burst_of_a_camera(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with camera(producer, burst=3) as eye:
+        grab = asyncio.create_task(eye.grab())
+        await until(lambda: fakes.begun(LEFT) >= 1)
+        change = asyncio.create_task(eye.set_exposure(0.002))
+        image, changed_s = await asyncio.gather(grab, change)
+        after = await eye.grab()
+    assert image.exposure is not None
+    assert after.exposure is not None
+    assert image.exposure.exposure_s == pytest.approx(0.001)
+    assert after.exposure.exposure_s == pytest.approx(changed_s) == pytest.approx(0.002)
+
+
+async def test_an_exposure_is_not_changed_within_the_burst_of_a_head(
+    producer: Path, fakes: FakeCameras
+) -> None:
+    async with head(producer, burst=3) as eyes:
+        grab = asyncio.create_task(eyes.grab())
+        await until(lambda: fakes.begun(LEFT) >= 1)
+        change = asyncio.create_task(eyes.set_exposure(0.002))
+        pair, _ = await asyncio.gather(grab, change)
+        after = await eyes.grab()
+    assert [one.exposure_s for one in pair.exposures] == pytest.approx([0.001, 0.001])
+    assert [one.exposure_s for one in after.exposures] == pytest.approx([0.002, 0.002])
