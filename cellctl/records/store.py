@@ -9,8 +9,6 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from sqlalchemy import select
-
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.records.database import ledger, reading, rows, schema, sealed
@@ -45,9 +43,8 @@ class RunStore:
     ) -> None:
         """Open the store in a folder, migrate an older one, or create it.
 
-        ``lock_wait_s`` is how long a write waits for another program that is writing. Raises
-        ``StoreUnavailable``, ``StoreTooNew``; ``StoreHeldByEarlierVersion`` where a daemon
-        works with an older one.
+        A write waits ``lock_wait_s`` for another writer. Raises ``StoreUnavailable``,
+        ``StoreTooNew``; ``StoreHeldByEarlierVersion`` where a daemon works with an older one.
         """
         self.path = path
         self._ownership = Ownership(path / "owner.lock")
@@ -69,13 +66,11 @@ class RunStore:
         """
         self._ownership.take()
         with self._database.write() as session:
-            still_open = select(schema.RunRow).where(schema.RunRow.ended.is_(None))
-            found = session.scalars(still_open).all()
+            found = rows.open_runs(session)
             for row in found:
                 if (data := self._unfinished.read(row.number)) is not None and has_messages(data):
-                    sha256 = self.artefacts.put(data)
-                    file = MOTION, MCAP_MEDIA_TYPE, sha256, len(data)
-                    session.add(rows.artefact(row.number, *file))
+                    kept = self.artefacts.put(data), len(data)
+                    session.add(rows.artefact(row.number, MOTION, MCAP_MEDIA_TYPE, *kept))
                 rows.close(session, row, RunResult.INTERRUPTED, None, None)
             interrupted = [row.number for row in found]
         # Those of runs that were closed too: a daemon may die between storing and removing.
@@ -264,11 +259,13 @@ class RunStore:
 
     def runs(self, limit: int = 50, serial: str | None = None) -> list[RunHead]:
         """The newest runs, newest first; of one serial number if given."""
-        query = select(schema.RunRow).order_by(schema.RunRow.number.desc()).limit(limit)
-        if serial is not None:
-            query = query.where(schema.RunRow.serial == serial)
         with self._database.read() as session:
-            return [rows.to_entry(row, RunHead) for row in session.scalars(query)]
+            return reading.run_heads(session, limit, serial)
+
+    def good_parts(self) -> int:
+        """Runs of Production that ended with a good part."""
+        with self._database.read() as session:
+            return reading.good_parts(session)
 
     def figure_keys(self) -> list[str]:
         """Keys of all figures that any run has."""

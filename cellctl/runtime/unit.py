@@ -20,7 +20,7 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import STATES, State
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.background import Background
@@ -106,13 +106,10 @@ class UnitController:
         if self._interrupted:
             _log.warning("an earlier process left runs open", runs=self._interrupted)
         await self.alarms.open()
-        # All of them: parts are counted since installation, and only the records know that.
-        heads = await self._store.do(RunStore.runs, limit=1_000_000)
-        if heads:
-            self._jobs.recall(heads[0])
-        self.parts = sum(
-            head.mode == PRODUCTION and head.result == RunResult.GOOD for head in heads
-        )
+        for newest in await self._store.do(RunStore.runs, limit=1):
+            self._jobs.recall(newest)
+        # Parts are counted since installation, and only the records know that.
+        self.parts = await self._store.do(RunStore.good_parts)
 
     async def come_up(self) -> None:
         """Connect the devices, as Clear does; then the unit is Stopped, else Aborted by a fault."""

@@ -39,6 +39,7 @@ from cellctl.records.entries import (
     RecordedPose,
     RunHead,
     RunRecord,
+    RunResult,
 )
 from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.seals import Seal
@@ -57,6 +58,21 @@ def audit_log(session: Session) -> list[AuditEntry]:
     """Every entry of the audit log, oldest first."""
     found = session.scalars(select(AuditRow).order_by(AuditRow.id))
     return [to_entry(row, AuditEntry) for row in found]
+
+
+def run_heads(session: Session, limit: int, serial: str | None) -> list[RunHead]:
+    """The newest runs, newest first; of one serial number if given."""
+    query = select(RunRow).order_by(RunRow.number.desc()).limit(limit)
+    if serial is not None:
+        query = query.where(RunRow.serial == serial)
+    return [to_entry(row, RunHead) for row in session.scalars(query)]
+
+
+def good_parts(session: Session) -> int:
+    """Runs of Production that ended with a good part."""
+    # Counted by the database: a store of years has a hundred thousand runs.
+    good = RunRow.mode == PRODUCTION, RunRow.result == RunResult.GOOD
+    return session.scalar(select(func.count()).select_from(RunRow).where(*good)) or 0
 
 
 def figure_keys(session: Session) -> list[str]:

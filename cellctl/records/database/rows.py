@@ -1,5 +1,6 @@
 """Makes rows of entries and entries of rows, by the names of their fields."""
 
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import Any, TypeVar
 
@@ -89,6 +90,11 @@ def open_run(session: Session, number: int) -> RunRow:
     if row.ended is not None:
         raise RunClosed(f"run {number}, {row.result}")
     return row
+
+
+def open_runs(session: Session) -> Sequence[RunRow]:
+    """The rows of all runs that nobody has closed."""
+    return session.scalars(select(RunRow).where(RunRow.ended.is_(None))).all()
 
 
 def open_phase(session: Session, run: int) -> PhaseRow | None:
