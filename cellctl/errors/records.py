@@ -1,7 +1,4 @@
-"""8xx: run store and artefacts; 83x: the database with the records of many cells.
-
-None of 83x reaches a running cell.
-"""
+"""8xx: run store and artefacts; 83x: the records of many cells, which no running cell needs."""
 
 from cellctl.errors.base import CellError, Reaction
 
@@ -37,10 +34,7 @@ class StoreHeldByEarlierVersion(StoreUnavailable):
     number = 815
     text = "Run store is in use by a daemon of an earlier version"
     cause = "A command or a second daemon of a later version was started beside a running daemon."
-    remedy = (
-        "Use the commands of the version that runs. To upgrade, stop the daemon when no run is "
-        "open."
-    )
+    remedy = "Use the commands of the running version. Stop its daemon between runs to upgrade."
     reaction = Reaction.STOP
 
 
@@ -68,14 +62,8 @@ class StoreLocked(RecordsError):
 
     number = 825
     text = "Another program keeps the run store locked"
-    cause = (
-        "A program that writes to store.sqlite has not finished, such as a database browser, a "
-        "backup or a suspended cellctl command."
-    )
-    remedy = (
-        "End that program (`fuser store.sqlite` names it), then Clear, or give the command again. "
-        "The store is sound and takes the next record."
-    )
+    cause = "A program that writes to store.sqlite has not ended, such as a backup."
+    remedy = "End it (`fuser store.sqlite` names it), then Clear or repeat. The store is sound."
 
 
 class RunUnknown(RecordsError):
