@@ -71,6 +71,10 @@ class Blur:
         return EdgeBlur(self, np.sqrt(1.0 + uneven), double)
 
 
+START_BLUR = Blur(1.0)
+"""A lens in focus, where nothing is known yet."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class EdgeBlur:
     """The blur across edges of given directions."""

@@ -13,7 +13,7 @@ from scipy.special import expit
 from cellctl.geometry.pose import Array
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import SecondEdge
-from cellctl.vision.rim.blur import Blur
+from cellctl.vision.rim.blur import START_BLUR, Blur
 from cellctl.vision.rim.fit_input import RimFitInput
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.problem import add_to_diagonal, with_unit_diagonal
@@ -21,6 +21,7 @@ from cellctl.vision.rim.shape import RimShape, outside_circles, outside_walls
 from cellctl.vision.rim.solver import (
     UNKNOWN_SIGMA,
     RimFit,
+    RimPrior,
     coarse_fit,
     full_fit,
     judged_by_arcs,
@@ -36,7 +37,6 @@ _RIDGE = 1e-6
 _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 """Widths of a ring that is tested for."""
 
-_START_BLUR = Blur(1.0)
 _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """Depths at which a fit may start: it converges from above the true one, not always from below."""
 _HINT_GAIN = 4.0
@@ -46,7 +46,9 @@ _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _BLUR_SIGMA: Array = np.array([0.25, *UNKNOWN_SIGMA])
 _KNOWN_BLUR_SIGMA: Array = np.array([0.03, 0.05, 0.05, 0.1])
-"""Prior of ``Blur.vector`` about the first guess, and about what other rims of the image show."""
+_LIKELY_BLUR_SIGMA: Array = np.array([0.1, 0.1, 0.1, 0.3])
+"""Prior of ``Blur.vector`` about the first guess, and about what other rims of the image show: for
+two edges, and wider for one, which shows its blur itself."""
 _WALL_M, _WALL_SIGMAS = 2e-3, 4.0
 """Depth of a wall that may be all that there is, and its standard deviation over it."""
 _TURNS_GREY = 15.0
@@ -123,12 +125,17 @@ class SelectedFit:
     image, shape (2, 2), or of (x, y) in both images and the radius, shape (5, 5)."""
 
 
-def fit_single_image(given: RimFitInput) -> SelectedFit:
-    """Fit a rim in one image by itself, with a wall below it or without."""
+def fit_single_image(given: RimFitInput, known: Blur | None) -> SelectedFit:
+    """Fit a rim in one image by itself, with a wall below it or without.
+
+    ``known`` is the blur that other rims have shown in this image, where there are any.
+    """
     kind, across_lay = given.roi.kind, given.across_lay()
-    light, radius = LightModel(cone=kind.cone), given.roi.nominal_radius
-    bare = RimShape(given.centre, given.radius, _START_BLUR)
-    problem = single_image_problem(given.pixels, bare, light, radius, across_lay)
+    light, prior = LightModel(cone=kind.cone), RimPrior(given.roi.nominal_radius)
+    if known is not None:
+        prior = replace(prior, blur=known, blur_sigma=_LIKELY_BLUR_SIGMA)
+    bare = RimShape(given.centre, given.radius, prior.blur)
+    problem = single_image_problem(given.pixels, bare, light, prior, across_lay)
     plain = full_fit(problem, bare.vector)
     by_arcs = _by_arcs(plain)
     if not kind.may_show_wall:
@@ -140,7 +147,7 @@ def fit_single_image(given: RimFitInput) -> SelectedFit:
     if gain < _HINT_GAIN and not tests.uneven_inside():
         return by_arcs
     shape = replace(plain.shapes[0], wall_ratio=ratio)
-    with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
+    with_wall = single_image_problem(given.pixels, shape, light, prior, across_lay)
     return _likelier(by_arcs, _by_arcs(full_fit(with_wall, shape.vector)))
 
 
@@ -216,7 +223,7 @@ def fit_two_edges(
     outer edge of a cone lies nearer to the cameras than the rim, so the two images show it in
     different places: that tells a cone from a flat ring.
     """
-    blurs, blur_sigma = (_START_BLUR, _START_BLUR), _BLUR_SIGMA
+    blurs, blur_sigma = (START_BLUR, START_BLUR), _BLUR_SIGMA
     if known is not None:
         blurs, blur_sigma = known, _KNOWN_BLUR_SIGMA
     pixels, across_lay = (given[0].pixels, given[1].pixels), given[0].across_lay()

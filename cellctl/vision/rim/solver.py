@@ -1,11 +1,12 @@
 """Robust maximum-likelihood fit of a rim by damped Gauss-Newton steps, in one image or in both."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.blur import SIZE as _BLUR_SIZE
+from cellctl.vision.rim.blur import START_BLUR, Blur
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.noise import median
 from cellctl.vision.rim.problem import (
@@ -44,6 +45,8 @@ ended without regard to that edge left its way to the next ones: one fit in five
 thirty rounds instead of one in twenty (24 pairs of images of three assemblies)."""
 _ARC_ROUNDS = 4
 """Rounds in which the other arcs find their circle: each without the pull of what is left out."""
+_MOST_JUDGED_ROUNDS = 8
+"""The fit to the other arcs begins at its end: one that creeps does not come to a better one."""
 _MAX_STEP_PX = 0.7
 """Longest step of a centre or a radius; see ``_moved``."""
 _MAX_DAMPING = 1e4
@@ -77,18 +80,29 @@ class RimFit:
         return count * float(np.log(mean_square)) + free * float(np.log(count))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class RimPrior:
+    """What is known of a rim before its image is fitted."""
+
+    radius: float
+    """Plane units."""
+    blur: Blur = START_BLUR
+    blur_sigma: Array = field(default_factory=lambda: np.array([np.inf, *UNKNOWN_SIGMA]))
+    """Standard deviation of ``Blur.vector``."""
+
+
 def single_image_problem(
-    pixels: RimPixels, start: RimShape, light: LightModel, radius: float, across_lay: Array | None
+    pixels: RimPixels, start: RimShape, light: LightModel, prior: RimPrior, across_lay: Array | None
 ) -> RimProblem:
-    """One image of a rim of about ``radius`` (plane units), with the parts that ``start`` has.
+    """One image of a rim, with the parts that ``start`` has.
 
     ``across_lay`` is the unit vector across the lay of the face, if it has one.
     """
     mean, sigma = start.vector, np.full(len(start.vector), np.inf)
     # The prior is the size on the drawing, not the located size: the edges that located the rim are
     # the same pixels, and would be counted twice.
-    mean[2], sigma[2] = radius, _RADIUS_SIGMA * radius
-    sigma[BLUR] = [np.inf, *UNKNOWN_SIGMA]
+    mean[2], sigma[2] = prior.radius, _RADIUS_SIGMA * prior.radius
+    mean[BLUR], sigma[BLUR] = prior.blur.vector, prior.blur_sigma
     if start.wall_ratio is not None:
         sigma[FIRST_RATIO] = _WALL_SIGMAS * start.wall_ratio
     view = RimView(pixels, start, np.eye(len(mean)))
@@ -163,14 +177,21 @@ def judged_by_arcs(fit: RimFit) -> RimFit:
     trial = without_bad_arcs(problem, fit.solution)
     for _ in range(_ARC_ROUNDS):
         trial = without_bad_arcs(problem, _settle(problem, trial, _SETTLED_PX))
-    judged = _minimised(problem, trial, _FINE_PX, weighing_rounds=0)
+    judged = _minimised(
+        problem, trial, _FINE_PX, weighing_rounds=0, most_rounds=_MOST_JUDGED_ROUNDS
+    )
     # Where hardly a half agrees, the arcs may swing between two circles. Then all of them count,
     # and their disagreement widens the covariance.
     return judged if judged.converged else fit
 
 
 def _minimised(
-    problem: RimProblem, start: RimSolution, tolerance_px: float, *, weighing_rounds: int
+    problem: RimProblem,
+    start: RimSolution,
+    tolerance_px: float,
+    *,
+    weighing_rounds: int,
+    most_rounds: int = _MAX_ROUNDS,
 ) -> RimFit:
     """The best solution, and whether it settled.
 
@@ -180,7 +201,7 @@ def _minimised(
     """
     best = start
     change_px = np.inf
-    for number in range(_MAX_ROUNDS):
+    for number in range(most_rounds):
         anchor = best.vector
         best = _settle(problem, best, _SETTLED_PX if number else _ROUGH_PX)
         change_px = _step_px(problem, best.vector - anchor)

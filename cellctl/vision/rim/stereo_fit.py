@@ -73,7 +73,8 @@ def measure_rims(
     """
     kind = rois[0].kind
     given = _fit_inputs(rois, located, kind.first_ring_px)
-    fits = fit_single_image(given[0]), fit_single_image(given[1])
+    blurs = known or (None, None)
+    fits = fit_single_image(given[0], blurs[0]), fit_single_image(given[1], blurs[1])
     # Both single fits come first even where a second edge is likely: they are the evidence by which
     # the kind decides, and for a rim with one edge they are already the result.
     second = kind.second_edge(StereoEvidence(given, fits))

@@ -8,7 +8,7 @@ from cellctl.vision.rim.blur import Blur
 from cellctl.vision.rim.covariance import with_covariance
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.shape import RimPixels, RimShape
-from cellctl.vision.rim.solver import full_fit, judged_by_arcs, single_image_problem
+from cellctl.vision.rim.solver import RimPrior, full_fit, judged_by_arcs, single_image_problem
 
 UNIT_PX = 1.0 / 3600.0
 RADIUS_PX, HALF_PX, SUB = 21.5, 29, 8
@@ -65,7 +65,7 @@ def test_a_movement_during_the_exposure_does_not_shift_a_rim_with_a_wall() -> No
     fine = np.where(inside, np.where(below, DARK, WALL), PLATE)
     pixels = pixels_of(fine, moved_by(4.0))
     start = RimShape(CENTRE, RADIUS_PX * UNIT_PX, Blur(1.0), wall_ratio=0.04)
-    problem = single_image_problem(pixels, start, LightModel(), start.radius, None)
+    problem = single_image_problem(pixels, start, LightModel(), RimPrior(start.radius), None)
     fit = full_fit(problem, start.vector)
     # The movement is seen as what it is: the variance of a line of 4 px along x, beside the lens.
     assert fit.shapes[0].blur.stretch[0] > 0.3
@@ -79,7 +79,7 @@ def test_a_dented_arc_does_not_shift_the_rim() -> None:
     fine = np.where(np.hypot(x, y) < RADIUS_PX + dent_px, DARK, PLATE)
     pixels = pixels_of(fine, in_focus())
     start = RimShape(CENTRE, RADIUS_PX * UNIT_PX, Blur(1.0))
-    problem = single_image_problem(pixels, start, LightModel(), start.radius, None)
+    problem = single_image_problem(pixels, start, LightModel(), RimPrior(start.radius), None)
     all_arcs = full_fit(problem, start.vector)
     fit = judged_by_arcs(all_arcs)
     assert off_px(all_arcs.shapes[0]) > 0.05
@@ -89,7 +89,7 @@ def test_a_dented_arc_does_not_shift_the_rim() -> None:
     perfect = full_fit(
         single_image_problem(
             pixels_of(np.where(np.hypot(x, y) < RADIUS_PX, DARK, PLATE), in_focus()),
-            start, LightModel(), start.radius, None,
+            start, LightModel(), RimPrior(start.radius), None,
         ),
         start.vector,
     )  # fmt: skip
@@ -102,6 +102,7 @@ def test_a_clean_rim_is_left_as_it_is() -> None:
     pixels = pixels_of(np.where(np.hypot(x, y) < RADIUS_PX, DARK, PLATE), in_focus())
     start = RimShape(CENTRE, RADIUS_PX * UNIT_PX, Blur(1.0))
     fit = full_fit(
-        single_image_problem(pixels, start, LightModel(), start.radius, None), start.vector
+        single_image_problem(pixels, start, LightModel(), RimPrior(start.radius), None),
+        start.vector,
     )
     assert judged_by_arcs(fit) is fit
