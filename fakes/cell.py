@@ -110,7 +110,7 @@ class Cell:
         while not self.stopping.is_set():
             now_s = self.clock()
             self.world.advance(now_s)
-            # After each advance, so that it sees every place that the arms have been at.
+            # The watch looks after each advance, so that it sees every place that the arms were at.
             self.watch.sample(now_s)
             await asyncio.sleep(_ADVANCE_S)
 

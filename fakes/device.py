@@ -23,7 +23,7 @@ class Device:
 
     name: str
     port: int
-    """Where it shall listen; 0 for any free port."""
+    """Port on which it shall listen; 0 for any free port."""
     faults: FaultBoard | DeviceFaults
     start: Callable[[], Awaitable[int]]
     """Listens and returns the port, 0 for a device without one; ``OSError`` when it is taken."""

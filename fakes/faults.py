@@ -52,7 +52,7 @@ JOB_FAULTS = {
     "reject": "the next motion is an alarm with `reason` that ends the main job",
     "abort": "the controller shows an error when `after_s` have passed",
 }
-"""Of a controller that runs the shipped jobs. They offer no streamed motion."""
+"""Faults of a controller that runs the shipped jobs, which offer no streamed motion."""
 TRACKER_FAULTS = {
     "silent": "requests are not answered",
     "error": "requests are answered with an error",

@@ -15,7 +15,8 @@ from fakes.world.robot import RobotArm
 
 @dataclass(slots=True)
 class Motion:
-    """From one standstill to the next. Times in seconds of the world since the watch began."""
+    """A motion lasts from one standstill to the next. Times are seconds of the world since the
+    watch began."""
 
     begun_s: float
     """0 for a motion that was under way when the watch began."""

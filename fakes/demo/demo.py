@@ -30,11 +30,11 @@ class Evidence:
     result: Message
     """The last message of the line PLC."""
     truth: Mapping[str, Any]
-    """Of the fake world, at the end."""
+    """What the fake world says about itself at the end."""
     record: Mapping[str, Any]
     """The cell's own record, as exported; empty when no run was opened."""
     recipe: Mapping[str, Any] = field(default_factory=dict)
-    """Of the run, likewise."""
+    """The recipe of the run, likewise."""
 
     @property
     def good(self) -> bool:
@@ -62,7 +62,7 @@ class Judgement:
     passed: bool
     """The cell says good, and the truth agrees."""
     figures: Mapping[str, Any] = field(default_factory=dict)
-    """For ``result.json``; JSON values."""
+    """What ``result.json`` gets, as JSON values."""
     rows: Sequence[Row] = ()
 
 
@@ -70,7 +70,7 @@ class Demo(ABC):
     """One process on its fake cell."""
 
     process: ClassVar[str]
-    """As the entry point and the cell file name it."""
+    """Its name in the entry point and in the cell file."""
     title: ClassVar[str]
     """What is demonstrated, for the first line in the terminal."""
     cell: ClassVar[Path]
@@ -83,7 +83,7 @@ class Demo(ABC):
     serial: ClassVar[str] = "SAT-{seed:04d}"
     """Serial number of the part."""
     mate_serial: ClassVar[str] = ""
-    """Of the part that it is joined to, in the same form."""
+    """Serial number of the part that it is joined to, in the same form."""
     procedures: ClassVar[Sequence[Procedure]] = ()
     """All calibrations of the cell in their order, for ``--calibrate``."""
     steps: ClassVar[Mapping[int, str]] = {}

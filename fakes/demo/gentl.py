@@ -70,7 +70,10 @@ def way_of_images(
 
 
 def _head_with_one_number(scenario: Scenario) -> str:
-    """Behind a producer it would get another one, and no calibration would fit it any more."""
+    """The head of the scenario that has one serial number; images of a producer do not suit it.
+
+    Behind a producer it would get another number, and no calibration would fit it any more.
+    """
     heads = scenario.stereo_cameras.items()
     return next((name for name, head in heads if "+" not in head.serial), "")
 

@@ -45,7 +45,7 @@ class LiveView:
             return
         if self._begun_s is None:
             self._begun_s = message["time"]
-        # Between two steps the register shows none: a line for that would only be noise.
+        # The register shows no step between two of them; a line for that would only be noise.
         pause = message["state"] == "EXECUTE" and not message["step"]
         if any(self._last.get(key) != message.get(key) for key in self._telling) and not pause:
             time_s = message["time"] - self._begun_s

@@ -41,7 +41,7 @@ def collect(
     if run:
         for arguments in demo.measure(evidence):
             _cellctl(folder, "runs", *arguments)
-        # Of an earlier demonstration in this folder, whose run stays in the store.
+        # The report may be that of an earlier demonstration, whose run stays in the store.
         shutil.rmtree(folder / "report", ignore_errors=True)
         _cellctl(folder, "runs", "export", str(run), "--out", str(folder / "report"))
         record = json.loads((folder / "report" / "run.json").read_text(encoding="utf-8"))
@@ -74,7 +74,7 @@ def collect(
 
 
 def result_table(outcome: Outcome) -> Table:
-    """For the end of the demonstration."""
+    """The table that is shown at the end of the demonstration."""
     table = Table("figure", "value", "limit", title=f"seed {outcome.seed}: {outcome.result}")
     for row in outcome.judgement.rows:
         written = "–" if row.value is None else row.form.format(row.value)

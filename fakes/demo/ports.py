@@ -37,7 +37,7 @@ def _modbus_port(cell: Path) -> dict[str, int]:
 
 def _free(port: int) -> bool:
     with socket.socket() as probe:
-        # As the servers do: a connection that has just ended does not keep its port.
+        # The servers set this too: a connection that has just ended does not keep its port.
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:
             probe.bind((HOST, port))

@@ -30,8 +30,8 @@ RUN_TIMEOUT_S = 900.0
 """How long the line waits for a part. A computer that others share renders and measures so slowly
 that a run of a minute takes six; a run that does not go on ends by the cell's own limits."""
 SLOW_SHARE = 0.01
-"""Of its time, lost by the fake cell: from here on the computer is named as a cause. Two processors
-that are free lose a tenth of it."""
+"""Share of its time that the fake cell may lose before the computer is named as a cause. With two
+free processors it loses a tenth of that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +88,7 @@ class Session:
         self._console.print(
             f"{self._demo.title}: starting fake cell (seed {self._seed}) and daemon …"
         )
-        # Before the fake cell: it writes the file by which the producer finds its cameras.
+        # This comes before the fake cell: it writes the file that tells the producer its cameras.
         self._gentl, how = way_of_images(
             self._files.cameras, self._files.cell, self._load_scenario, self._folder / "gentl"
         )
@@ -138,7 +138,7 @@ class Session:
         return self._calibrate() if calibrate else self._produce()
 
     def how_it_ended(self) -> str:
-        """For the user who interrupted: what became of the run, and of the processes."""
+        """Tells a user who interrupted what became of the run and of the processes."""
         closed = self._daemon.logged("run closed") if self._daemon is not None else None
         run = f"run {closed['run']} is closed as {closed['result']}; " if closed else ""
         return f"stopped: {run}daemon and fake cell have ended"

@@ -13,7 +13,7 @@ _REFUSALS = {
 
 
 def why_not_good(result: dict[str, Any]) -> str:
-    """From the last message of the line PLC; the faults behind it are the daemon's to tell."""
+    """The reason in the line PLC's last message; the daemon tells the faults behind it."""
     parts = [str(result.get("result") or "no result")]
     if code := result.get("reject_code"):
         parts.append(

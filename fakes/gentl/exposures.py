@@ -1,4 +1,4 @@
-"""Where the producer has a fake cell expose: one request and one answer for each exposure.
+"""The producer has a fake cell expose here: one request and one answer for each exposure.
 
 Messages on a local socket, laid out as in ``producer/cell_images.h``; an image comes with its
 answer as a descriptor of memory, so its bytes never pass through the socket.
@@ -22,7 +22,8 @@ from fakes.gentl.formats import FORMATS, Format
 _REQUEST: Final = struct.Struct("<4s7IddQ")
 _ANSWER: Final = struct.Struct("<4s5I")
 _PIECE: Final = 1 << 20
-"""Of an image, bytes: half a millisecond of the loop that keeps the time of the cell."""
+"""Bytes of an image that are written at once: they take half a millisecond of the event loop,
+which also keeps the time of the cell."""
 
 
 class Outcome(IntEnum):
@@ -44,7 +45,7 @@ class Asked:
     camera: int
     """Its place in the file of cameras."""
     offset_px: tuple[int, int]
-    """Of the region that is read out: x, y."""
+    """Offset of the region that is read out: x, y."""
     size_px: tuple[int, int]
     """Width, height."""
     pixel_format: Format
@@ -72,7 +73,7 @@ class ExposureServer:
 
     def __init__(self, expose: Expose) -> None:
         self.address: Final = f"cellctl-fake-cell-{uuid4().hex}"
-        """In the abstract namespace: it has no file, and ends with this process."""
+        """Name in the abstract namespace of sockets: it has no file, and ends with this process."""
         self._expose = expose
         self._task: asyncio.Task[None] | None = None
 
@@ -140,7 +141,7 @@ async def _answer(connection: socket.socket, exposed: Exposed) -> None:
     answer = _ANSWER.pack(b"FCGA", exposed.outcome, *exposed.size_px, size, 0)
     block = os.memfd_create("fake-image", os.MFD_CLOEXEC)
     try:
-        # Not in a thread: beside busy programs it would wait for a processor, the loop does not.
+        # A thread would wait for a processor beside busy programs; the event loop does not.
         left = exposed.data.data
         while left:
             left = left[os.write(block, left[:_PIECE]) :]

@@ -8,7 +8,7 @@ from fakes.scenario_file.sections import Camera, SingleCamera, StereoCamera
 
 
 def shown(scenario: Scenario) -> dict[str, tuple[FakeCamera, ...]]:
-    """By the name of the device; of a head the left camera first."""
+    """Cameras by the name of their device; a head has two, the left one first."""
     return {
         name: tuple(_lenses(name, camera, scenario.optics_of(name).image_px))
         for name, camera in scenario.all_cameras().items()

@@ -42,7 +42,7 @@ class RenderOptions:
     gloss: float = 0.10
     """Relative height of the soft highlight, at another place in each camera."""
     mirror: float = 0.0
-    """By how much of its way in a perfect mirror the highlight moves when the surface tilts."""
+    """Share of the way in a perfect mirror that the highlight moves when the surface tilts."""
     vignetting: float = 0.12
     """Relative loss of light in the corner of the image."""
 
@@ -60,7 +60,7 @@ class RenderOptions:
 
     @classmethod
     def clean(cls, **changes: Any) -> "RenderOptions":
-        """Even light, flat surfaces, dark holes without visible walls, no noise."""
+        """Options with even light, flat surfaces, dark holes without visible walls, no noise."""
         even = cls(
             wall_grey=cls().dark_grey,
             thread_grey=cls().dark_grey,

@@ -1,4 +1,4 @@
-"""From a scene to the clean picture of each camera."""
+"""Draws the clean picture that each camera has of a scene."""
 
 from functools import partial
 
@@ -60,8 +60,8 @@ def clean_picture(
     # The light of the measured object is laid over everything behind it too, which is only looked
     # at.
     image *= light
-    # Before the measured details, which bring their own blur from finer cells: blurred once more,
-    # they would be too soft.
+    # The blur comes before the measured details, which bring their own from finer cells: blurred
+    # once more, they would be too soft.
     image = blurred(image, blur_px)
     for patch in measured:
         patch.lay_over(image, light)

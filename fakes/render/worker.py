@@ -35,7 +35,7 @@ from fakes.world.scene import CameraScene, Exposure, MonoTruth
 
 _KEPT_SCENES: Final = 3
 _CHANNELS: Final = 3
-"""Of a colour camera."""
+"""Colour channels of a colour camera."""
 _CHANNEL_GAINS: Final = (np.float32(1.0), np.float32(0.94), np.float32(0.86))
 """Red, green, blue: bare metal under a warm white lamp, which is all there is to see."""
 _kept: "OrderedDict[Any, tuple[Image, ...]]" = OrderedDict()
@@ -67,7 +67,7 @@ def render_frame(
     scene: CameraScene, options: RenderOptions, faults: frozenset[str] = frozenset()
 ) -> Frame:
     """One exposure; ``faults`` are names of ``SCENE_FAULTS`` and ``PICTURE_FAULTS``."""
-    # In one fixed order, so that the same set of faults always gives the same picture.
+    # The order is fixed, so that the same set of faults always gives the same picture.
     for name in _in_order(SCENE_FAULTS, faults):
         scene = SCENE_FAULTS[name](scene)
     clean = _clean(scene, options)

@@ -14,7 +14,7 @@ from fakes.robot_jobs.program import Program, load_program, read_program
 SHIPPED = Path(__file__).parents[2] / "drivers" / "robot" / "siasun" / "job"
 """Folder of the delivery."""
 _ROUNDING_MM = 0.0005
-"""By which the job lets a step be longer than it says, for the last decimal of its numbers."""
+"""A step may be longer by this than the job says, because of the last decimal of its numbers."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,9 +12,9 @@ from dataclasses import dataclass, field
 from fakes.robot_jobs.lexer import JobError
 
 POSE = ("X", "Y", "Z", "RZ", "RY", "RX")
-"""In mm and degrees."""
+"""Coordinates of a pose, in mm and degrees."""
 JOINTS = ("J1", "J2", "J3", "J4", "J5", "J6")
-"""In degrees."""
+"""Joint angles, in degrees."""
 
 
 @dataclass(slots=True)

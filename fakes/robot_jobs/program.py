@@ -7,9 +7,9 @@ from fakes.robot_jobs.lexer import JobError, Token, tokens
 
 _VARIABLES = "IHR"
 _OPERANDS = "NIHRC"
-"""Of an expression: the grammar allows the coordinates of a position there and not its joints."""
+"""Operands of an expression: the grammar allows the coordinates of a position, not its joints."""
 _VALUES = "NIHRCJ"
-"""Of SET, of a condition, and behind ABS and SQRT."""
+"""Values that SET, a condition, ABS and SQRT take."""
 _MOTION = ("P 'V '= N|I|H|R 'ACC '= N 'FINE", "P 'V '= N|I|H|R 'ACC '= N 'FINE ': 'SKIP T")
 FORMS: dict[str, tuple[str, ...]] = {
     "SET": ("P P", "I|H|R|C|J N|I|H|R|C|J", "S S|T"),
@@ -46,7 +46,7 @@ FORMS: dict[str, tuple[str, ...]] = {
 """Word by word, what may follow it: kinds of tokens, and words of the language after a quote."""
 _AFTER_IF = {"GOTO", "OUT", "DELAY", "WAIT"}
 _FUNCTIONS = {"ABS": _VARIABLES, "SQRT": "R"}
-"""By word, kinds of the variable that may take the result."""
+"""Kinds of the variable that may take the result, by the word of the function."""
 _RELATIONS = {"==", "!=", ">", ">=", "<", "<="}
 
 

@@ -66,7 +66,7 @@ class Robot(Section):
     """An arm and its controller."""
 
     name: str
-    """Of the controller, as it names itself on the wire."""
+    """Name by which the controller calls itself on the wire."""
     ports: dict[Channel, int]
     """Ports of the PC that a job controller connects to: CMD, STA and, of an arm that the guard can
     stop, GRD. Or those where a collaborative arm listens: RPC and FRAMES."""
@@ -74,7 +74,7 @@ class Robot(Section):
     limits_deg: tuple[Pair, Pair, Pair, Pair, Pair, Pair]
     rated_deg_s: Six
     base_mm_deg: Pose
-    """In the frame of the cell."""
+    """Pose of the base in the frame of the cell."""
     base_placement: Spread
     link_sigma_mm: float
     link_sigma_deg: float
@@ -106,7 +106,7 @@ class Robot(Section):
     """Joint angles at switch-on."""
     controller: Controller = "protocol"
     statement_ms: float = 0.5
-    """Of a job file; nobody has published the speed of the real interpreter."""
+    """Time for a statement of a job file; the speed of the real interpreter is not published."""
     selected_load: Load | None = None
     """Chosen at the pendant of a collaborative arm, whose controller tells it."""
     permit: Contact | None = None
@@ -149,9 +149,9 @@ class Springs(Section):
     """How what hangs behind a force sensor is suspended: robot and gripper in series."""
 
     inertia_kg_m2: Three
-    """About the centre of mass of everything that hangs there."""
+    """Moments of inertia about the centre of mass of everything that hangs there."""
     stiffness_n_m: Three
-    """In tool axes: those of the flange, turned by 180° about x."""
+    """Stiffness along the tool's axes, which are those of the flange, turned by 180° about x."""
     rotational_stiffness_nm_rad: Three
     damping_ratio: float
 
@@ -163,7 +163,7 @@ class ChessboardPrint(Section):
     """Along x, along y."""
     square_mm: float
     size_mm: Pair
-    """Of the plate that carries the print."""
+    """Size of the plate that carries the print."""
     bow_spread_mm: float
     """Height of its middle over its edges, along each side."""
 
@@ -192,7 +192,7 @@ class Optics(Section):
     gain_spread: float
     exposure_us: int
     stereo: StereoRig | None = None
-    """Only for stereo heads."""
+    """Arrangement of both cameras; only stereo heads have one."""
 
 
 class Camera(Section):
@@ -228,7 +228,7 @@ class StereoCamera(Camera):
 
     @property
     def serials(self) -> tuple[str, str]:
-        """Of the left and of the right camera; a head with one number has an L and an R to it."""
+        """Serial numbers of the left and right camera; one number for both gets an L and an R."""
         left, plus, right = self.serial.partition("+")
         return (left, right) if plus else (f"{left}L", f"{left}R")
 
@@ -237,9 +237,9 @@ class RingLamp(Section):
     """The lamp round the lens of a camera, or beside it."""
 
     brightness: float = Field(default=1.0, gt=0)
-    """Of every picture, exposure time included; 1 is what the rendering is made for."""
+    """Brightness of every picture, exposure time included; the rendering is made for 1."""
     polar_deg: float = Field(default=60.0, gt=0, lt=90)
-    """Between its rays and the line of sight. Connectors alone show where light comes from."""
+    """Angle of its rays to the line of sight; only connectors show where light comes from."""
     one_sided: float = Field(default=0.0, ge=0, le=1)
     """Share by which the ring is brighter on one side, and darker on the other."""
     azimuth_deg: float = 0.0
@@ -261,7 +261,7 @@ class Gripper(Section):
 
     port: int
     travel_ms: float
-    """From one end position to the other."""
+    """Time that the jaws travel from one end position to the other."""
     part_present: bool
     """Whether there is a part between the jaws at switch-on."""
     watchdog_ms: int

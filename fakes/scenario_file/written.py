@@ -17,7 +17,7 @@ def read_written(path: Path, imperfections: Mapping[str, float]) -> dict[str, An
     with path.open("rb") as file:
         written = tomllib.load(file)
     if like := written.pop("like", None):
-        # Of one file only: a chain of them could not be read by a person.
+        # One other file and no more: a chain of files could not be read by a person.
         with (path.parent / str(like)).open("rb") as file:
             written = _merged(tomllib.load(file), written)
     scales = {**written.get("imperfections", {}), **imperfections}

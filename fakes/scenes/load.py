@@ -1,4 +1,4 @@
-"""From a scenario file to a scenario, and from that to a world."""
+"""Reads a scenario from its file, and makes a world of it."""
 
 from collections.abc import Mapping
 from pathlib import Path

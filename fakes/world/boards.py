@@ -18,10 +18,10 @@ class MadeChessboard:
     size_m: tuple[float, float]
     bow_m: tuple[float, float]
     seed: int
-    """For its texture."""
+    """Seed of its texture."""
 
     def seen(self, camera_T_board: RigidTransform) -> SceneChessboard:
-        """As a camera has it before it."""
+        """The board in the frame of a camera."""
         return SceneChessboard(
             camera_T_board=camera_T_board,
             inner_corners=self.inner_corners,

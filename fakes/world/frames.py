@@ -81,7 +81,7 @@ def matrix_distance(one: Array, other: Array) -> tuple[float, float]:
 
 def stream(seed: int, *names: str | int) -> np.random.Generator:
     """A random stream of its own for every thing that is drawn, so that draws stay independent."""
-    # Not ``hash``, which Python salts anew in every process: a seed has to reproduce its cell.
+    # Python salts ``hash`` anew in every process, but a seed has to reproduce its cell.
     keys = [name if isinstance(name, int) else crc32(name.encode()) for name in names]
     return np.random.default_rng(np.random.SeedSequence([seed, *keys]))
 

@@ -16,7 +16,7 @@ class PneumaticJaws:
     """
 
     travel_s: float = 0.15
-    """From one end position to the other."""
+    """Time from one end position to the other."""
     part_present: bool = True
     stuck: bool = False
     """The jaws do not move any more, whatever the valve does."""

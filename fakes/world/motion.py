@@ -87,10 +87,10 @@ class Profile:
 
 
 class Path(Protocol):
-    """Where the joints are along a motion."""
+    """Gives the joint angles along a motion."""
 
     length: float
-    """In the unit of the profile."""
+    """Length in the unit of the profile."""
     travel_m: float
     """Travel that counts for the repeatability error."""
 
@@ -143,7 +143,7 @@ class LinearPath:
 
 
 class StreamSegment:
-    """From one streamed setpoint to the next, straight in joint space; the length is metres.
+    """The way from one streamed setpoint to the next, straight in joint space; lengths are metres.
 
     It may be followed beyond its end, as an arm does that is told to stop while it moves.
     """

@@ -23,7 +23,7 @@ STEP_ANGLE_MAX_RAD = np.deg2rad(0.5)
 _STILL_M = 1e-9
 """A setpoint that is no farther away is the present pose; the metres of a step divide by it."""
 _JUMP_RAD = np.deg2rad(45.0)
-"""Between two knots of a linear path: more than this is a passage near a singularity."""
+"""A joint that turns farther than this between two knots of a linear path passes a singularity."""
 _JOG_ROUNDS = 3
 """An arm is wrong by nearly the same a millimetre away: each round leaves a thousandth."""
 _JOG_ACCELERATION_M_S2 = 0.1
@@ -214,8 +214,8 @@ class RobotArm:
         start_s = time_s + self.settings.start_latency_ms / 1000
         if self._flaws.timing is not None:
             start_s += self._flaws.timing.begin_motion()
-        # With the motions, because a base that moves all the time would never let an arm stand,
-        # and a standing one costs nothing.
+        # The base drifts only when a motion begins, because one that moves all the time would never
+        # let an arm stand, and a standing one costs nothing.
         self._cell_T_base = self._base_at(time_s)
         speed *= self.override_percent / 100
         self._path, self._profile = path, Profile(start_s, path.length, speed, acceleration)
@@ -240,7 +240,7 @@ class RobotArm:
         self._continue(time_s, further, speed)
 
     def _base_T_flange(self, joints: Array) -> Array:
-        """By the links as they are, without the error of a single motion."""
+        """The pose that the links as they were built give, without the error of a single motion."""
         joints = joints + self._zero_error_rad
         if self._flaws.transmission is not None:
             joints = joints + self._flaws.transmission.error(joints)

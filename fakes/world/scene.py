@@ -84,12 +84,12 @@ class ScenePlate:
     camera_T_part: RigidTransform
     size_m: tuple[float, float]
     thickness_m: float
-    """Of the sides that one sees past its edges."""
+    """Thickness of the sides that one sees past its edges."""
     holes: tuple[SceneHole, ...]
     seed: int
-    """For texture, scratches and false circles: fixed to the part for the whole run."""
+    """Seed of texture, scratches and false circles, which stay on the part for the whole run."""
     brightness: float = 1.0
-    """Of its face and sides, relative to the bare metal of the rendering."""
+    """Brightness of its face and sides, relative to the bare metal of the rendering."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ class SceneChessboard:
 
     camera_T_board: RigidTransform
     inner_corners: tuple[int, int]
-    """Along x, along y."""
+    """Number of corners along x and along y."""
     square_m: float
     size_m: tuple[float, float]
     bow_m: tuple[float, float]
@@ -141,7 +141,7 @@ class Exposure:
     """What distinguishes one exposure of a scene from the next, beside noise."""
 
     sway_rad: tuple[float, float] = (0.0, 0.0)
-    """By which the line of sight is off in the middle of the exposure, towards +x and +y of the
+    """Angle of the line of sight in the middle of the exposure, towards +x and +y of the
     image as the picture moves."""
     smear_rad: tuple[float, float] = (0.0, 0.0)
     """Standard deviation of its motion during the exposure."""
@@ -157,7 +157,7 @@ class CameraScene:
     time_s: float
     optics: StereoTruth | MonoTruth
     bodies: tuple[Seen, ...]
-    """In any order: nearer ones hide farther ones."""
+    """Bodies in any order: nearer ones hide farther ones."""
     light_seed: int
     """Direction of the light gradient; fixed for the camera in one run."""
     noise_seed: int

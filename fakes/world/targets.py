@@ -64,7 +64,7 @@ def seen_targets(
 
 
 def _visible(settings: Tracker, position: Array, facing: Array) -> bool:
-    """In range, within the cone of view, and turned towards the tracker."""
+    """True for a target in range, within the cone of view, and turned towards the tracker."""
     near, far = settings.range_mm
     range_m = float(np.linalg.norm(position))
     in_range = near * MM <= range_m <= far * MM

@@ -42,7 +42,7 @@ class CameraTruth:
     """A camera or stereo head as it was built and mounted."""
 
     mount_T_camera: RigidTransform
-    """On the flange of the robot that carries it, or in the cell where nothing does."""
+    """Pose on the flange of the robot that carries it, or in the cell where nothing does."""
     optics: StereoTruth | MonoTruth
     light_seed: int
 

@@ -135,7 +135,7 @@ class World(ABC, Generic[S_co]):
         mount_T_camera = self.truth.cameras[camera].mount_T_camera
         drift = self._camera_flaws[camera].drift
         if drift is not None:
-            # On the side of the camera: it drifts on its mount, and the mount does not.
+            # The drift stands on the camera's side: it moves on its mount, and the mount stays.
             mount_T_camera *= RigidTransform.from_matrix(drift.at(self.time_s))
         carrier = self.scenario.all_cameras()[camera].carried_by
         return mount_T_camera if carrier is None else self.flange(carrier) * mount_T_camera

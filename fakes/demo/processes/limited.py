@@ -14,7 +14,7 @@ class Limited:
     name: str
     key: str
     lower: float
-    """At least."""
+    """Smallest value that is within the limit."""
     upper: float
     """Less than."""
     form: str
@@ -26,7 +26,7 @@ class Limited:
         return value is not None and self.lower <= value < self.upper
 
     def row(self, value: float | None) -> Row:
-        """For the table at the end."""
+        """The row of this figure in the table at the end."""
         limit = f"{self.lower:g} … {self.upper:g}" if self.lower else f"{self.upper:g}"
         within = None if value is None else self.within(value)
         return Row(self.name, value, self.form, limit, within)

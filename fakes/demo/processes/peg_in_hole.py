@@ -46,7 +46,7 @@ class PegInHoleDemo(Demo):
         _next_part(control)
 
     def judge(self, evidence: Evidence) -> Judgement:
-        """In its own hole and at its seat, not slipped, and never pressed too hard."""
+        """Good is a peg that sits in its own hole, did not slip, and was never pressed too hard."""
         figures = _figures(evidence.truth)
         limited = _limited({**self.forces, **evidence.recipe.get("forces", {})})
         beyond = [one.name for one in limited if not one.within(figures[one.key])]

@@ -31,8 +31,9 @@ def draw_target_board(
         if window is None:
             continue
         x_disc, y_disc = surface_map(view, board.camera_T_board, window)
-        # In the plane of the board, where a disc is a circle: perspective and lens make the oval,
-        # so that the centre of the image ellipse is not the image of the centre, as in reality.
+        # Discs are drawn in the plane of the board, where each is a circle. Perspective and lens
+        # make an oval of it, so that the centre of the image ellipse is not the image of the
+        # centre, as in reality.
         outside = coverage(np.hypot(x_disc - middle[0], y_disc - middle[1]) - radius_m)
         patches.append(Patch.of_one_grey(window, outside, options.white_grey, blur_px))
     return patches
@@ -55,7 +56,7 @@ def draw_chessboard(
     # flat board gets wrong, so it must be in the picture.
     x, y = surface_map(view, board.camera_T_board, window, z_m=_bow(board), nodes=NODES_FULL)
     draw_face(image, x, y, board.size_m, options.white_grey)
-    # As a factor and not as a grey: the print then takes the light that falls on the paper.
+    # A factor in place of a grey lets the print take the light that falls on the paper.
     dark = np.float32(options.black_grey / options.white_grey)
     return [Patch(window, dark + (1 - dark) * white_share(pattern, x, y, blur_px))]
 

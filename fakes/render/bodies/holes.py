@@ -82,7 +82,7 @@ def hole_patch(
     if hole.kind != "pin":
         ring = coverage(rays.radius(depth_m) - radius_m)
         grey += visible * ring * _ring_grey(rays, hole, options, azimuth)
-        # From the front to the back: each surface takes its share of what is still visible, and
+        # Surfaces follow from front to back: each takes its share of what is still visible, and
         # leaves the rest.
         visible = visible * (1 - ring)
     if hole.kind == "thread":

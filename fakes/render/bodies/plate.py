@@ -49,7 +49,7 @@ def draw_plate(
     face: Image | float = level
     if options.texture_grey > 0:
         face = sample(brushed_tile(plate.seed), x, y)
-        # In place, because each of these arrays has five million pixels.
+        # These operations work in place, because each of these arrays has five million pixels.
         face *= np.float32(options.texture_grey)
         face += np.float32(level)
     draw_face(image, x, y, plate.size_m, face)

@@ -81,8 +81,8 @@ def white_share(pattern: Print, x_m: Array, y_m: Array, blur_px: float) -> Image
     field = pattern.white.astype(np.uint8)[row, column]
     reach = 1 + int(np.ceil(REACH * blur_px))
     kernel = np.ones((2 * reach + 1, 2 * reach + 1), np.uint8)
-    # Only where another field lies within reach of the blur; all other pixels are plain black or
-    # white.
+    # Only pixels with another field within reach of the blur are computed; all others are plain
+    # black or white.
     places = np.nonzero(cv2.dilate(field, kernel) != cv2.erode(field, kernel))
     side_x = _nearest_line(pattern.lines_x, x_m, *places)
     side_y = _nearest_line(pattern.lines_y, y_m, *places)

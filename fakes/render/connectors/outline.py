@@ -11,7 +11,7 @@ from fakes.render.optics.lens import Array, View
 from fakes.render.optics.surface import surface_map, to_pixels
 
 _SLANT_DEG = 10.0
-"""Of the short sides of a D."""
+"""Slant of the short sides of a D."""
 _FAR = np.float32(40.0)
 
 

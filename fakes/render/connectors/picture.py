@@ -1,4 +1,4 @@
-"""From connectors and marks to the clean picture of a camera."""
+"""Draws the clean picture that a camera has of connectors and marks."""
 
 from collections.abc import Iterable
 

@@ -56,12 +56,12 @@ class Shading:
         return cls(value @ weights, camera_T_body.rotation.as_matrix())
 
     def flat(self) -> float:
-        """Of a surface whose normal is the body's z."""
+        """Brightness of a surface whose normal is the body's z."""
         zero, one = np.zeros(1), np.ones(1)
         return float(self.at(zero, zero, one)[0])
 
     def at(self, x: Array, y: Array, z: Array | float) -> Array:
-        """Of unit normals (x, y, z) in the frame of the body."""
+        """Brightness of surfaces by their unit normals (x, y, z) in the frame of the body."""
         r = self.camera_R_body
         across = r[0, 0] * x + r[0, 1] * y + r[0, 2] * z
         down = r[1, 0] * x + r[1, 1] * y + r[1, 2] * z

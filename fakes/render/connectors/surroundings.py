@@ -12,7 +12,7 @@ from fakes.render.optics.surface import surface_map
 from fakes.world.connector.scene import BARE_METAL, SceneConnector
 
 _BASE_M = 1.0e-3
-"""From the housing to the ground of a plug's insulator, or to a socket's block."""
+"""Height from the housing to the ground of a plug's insulator, or to a socket's block."""
 _TEXTURE_ZOOM = 8.0
 """The tile is that of a milled deck; a connector's housing is worked more finely."""
 _SHELL_HEIGHTS = 4
@@ -23,7 +23,7 @@ _SHELL_WALL = 0.45
 def draw_surroundings(
     canvas: Canvas, view: View, connector: SceneConnector, look: ConnectorLook
 ) -> None:
-    """From the back to the front."""
+    """Draws what is farther away first."""
     drawing = connector.drawing
     long_m, short_m, height_m = drawing.insulator_m
     d_shape = Outline.d_shape(long_m, short_m)

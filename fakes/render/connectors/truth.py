@@ -21,9 +21,9 @@ class ContactTruth:
 
     state: ContactState
     connector_m: Array
-    """In the frame of its connector, shape (3,); z is zero."""
+    """Position in the frame of its connector, shape (3,); z is zero."""
     camera_m: Array
-    """In the camera, shape (3,)."""
+    """Position in the frame of the camera, shape (3,)."""
     px: Array
     """Its centre, projected, shape (2,); pixel centres lie at integers."""
 
@@ -47,7 +47,7 @@ class ConnectorTruth:
 
 
 def contact_truths(view: View, connector: SceneConnector) -> dict[str, ContactTruth]:
-    """By name of the contact; of a missing one where it would be."""
+    """Truths by the name of the contact; one that is missing stands where it would be."""
     points = np.array([[*contact.centre_m, 0.0] for contact in connector.contacts])
     camera = connector.camera_T_connector.apply(points)
     pixels = to_pixels(view, connector.camera_T_connector, points)
@@ -68,7 +68,7 @@ def contact_truths(view: View, connector: SceneConnector) -> dict[str, ContactTr
 
 
 def mark_truths(view: View, marks: SceneMarks) -> dict[str, MarkTruth]:
-    """By name of the mark."""
+    """Truths by the name of the mark."""
     points = np.array([[*mark.position_m, 0.0] for mark in marks.marks])
     camera = marks.camera_T_marks.apply(points)
     pixels = to_pixels(view, marks.camera_T_marks, points)

@@ -1,1 +1,1 @@
-"""From a surface to grey levels: lens, pixel lattice, area coverage, light, blur and noise."""
+"""Turns surfaces into grey levels: lens, pixel lattice, area coverage, light, blur and noise."""

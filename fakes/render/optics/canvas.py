@@ -41,7 +41,7 @@ class Patch:
 
     @classmethod
     def of_one_grey(cls, window: Window, outside: Array, grey: float, blur_px: float) -> Self:
-        """As ``from_cells`` for an object of one grey: one blur serves both of its arrays."""
+        """Does what ``from_cells`` does for an object of one grey: one blur serves both arrays."""
         through = window.mean(blurred_cells(outside, blur_px * window.sub))
         return cls(window, through, (1 - through) * grey)
 

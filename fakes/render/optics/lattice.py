@@ -70,7 +70,7 @@ def expand(window: Window, function: Callable[[Array], Array], *, nodes: int) ->
 
 
 def expand_single(view: View, function: Callable[[Array], Array]) -> list[Picture]:
-    """As ``expand`` over the whole image, in single precision."""
+    """Does what ``expand`` does over the whole image, in single precision."""
     nodes = NODES_LIGHT
     values = function(nodes_of(Window.full(view), nodes)).astype(np.float32)
     rows, columns = (_interpolation_single(count, nodes) for count in view.size_px[::-1])

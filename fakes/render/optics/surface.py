@@ -65,7 +65,7 @@ def is_seen(view: View, head_T_surface: RigidTransform) -> bool:
 def meet_surface(view_T_surface: RigidTransform, rays: Array, z_m: float | Height) -> Array:
     """Surface x, y (m) where rays (N, 2, normalised) meet z = ``z_m``; shape (N, 2)."""
     rotation = view_T_surface.rotation.as_matrix()
-    # In the frame of the surface: there the plane is z = constant, and meeting it is one division.
+    # In the frame of the surface the plane is z = constant, so meeting it is one division.
     directions = np.column_stack([rays, np.ones(len(rays))]) @ rotation
     origin = -rotation.T @ view_T_surface.translation
     if origin[2] <= 0 or directions[:, 2].max() >= 0:

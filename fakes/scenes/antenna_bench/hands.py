@@ -12,7 +12,7 @@ from fakes.world.frames import MM, displacement
 from fakes.world.robot import RefusedMotionError, RobotArm
 
 _KEY_BACK_S = 0.5
-"""From the end of the last motion until the key is turned back."""
+"""Time from the end of the last motion until the key is turned back."""
 
 
 class HandsAtPanel:

@@ -34,7 +34,7 @@ class PlugAtSocket:
         self.pair, self._mount = pair, mount
         self.states = outside(pair)
         self.response: Response | None = None
-        """Of the last evaluation; None while nothing can touch."""
+        """Response of the last evaluation; None while nothing can touch."""
         self.depth_m = -np.inf
         """True depth of the plug; minus infinity away from the socket."""
         self.peak_side_n = np.zeros(len(self.states))
@@ -42,7 +42,7 @@ class PlugAtSocket:
         self.peak_total_n = 0.0
         """Highest force against the insertion."""
         self._met_at: Array | None = None
-        """Of the last approach; None before the first."""
+        """Place of contact in the last approach; None before the first."""
         self._commanded_m = -np.inf
         self._inwards = True
 

@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from fakes.scenes.antenna_bench.scene import AntennaBench
 
 _ABOVE_SOCKET_M: Final = 5e-3
-"""From the seat up to where a hand stops and begins to plug."""
+"""Height above the seat at which a hand stops and begins to plug."""
 _GLANCE_MS: Final = 100
-"""Between two glances of an operator who stands by."""
+"""Time between two glances of an operator who stands by."""
 
 
 class BenchOperator:
@@ -35,7 +35,7 @@ class BenchOperator:
         self._board_pose = RigidTransform.identity()
 
     def commands(self) -> Mapping[str, Command]:
-        """By name on the control port."""
+        """Commands by their name on the control port."""
         return {
             "place_board": self.place_board,
             "remove_boards": self.remove_boards,
@@ -117,7 +117,7 @@ class BenchOperator:
             self._world.load()
 
     def _away_mm(self) -> float:
-        """From where the plug is in the fingers, or would be, to its place over the socket."""
+        """Distance from the plug's place in the fingers, also empty ones, to the socket's."""
         flange_T_plug = self._world.module.flange_T_plug
         cell_T_plug = self._world.flange(self._world.scenario.gripper.carried_by) * flange_T_plug
         away_m, _ = distance(self._world.parts.cell_T_socket * SOCKET_T_MATED_PLUG, cell_T_plug)

@@ -28,7 +28,7 @@ class Module(Springs):
     com_in_plug_mm: Three
     housing_mm: Pair
     height_mm: float
-    """From the plug's origin up to the top, which camera I sees on the tray."""
+    """Height of the top, which camera I sees on the tray, above the plug's origin."""
     top_holes_mm: tuple[Pair, ...]
     """Places of the holes in its top, in the axes of the plug."""
     top_hole_diameter_mm: float
@@ -41,7 +41,7 @@ class Tray(Section):
     placement: Spread
     size_mm: Pair
     below_top_mm: float
-    """From the module's top down to the face of the tray."""
+    """Depth of the tray's face below the module's top."""
     brightness: float
     """Relative to bare metal."""
 
@@ -69,7 +69,7 @@ class BenchGripper(Section):
     grip_range_mm: float
     """A module that is farther from its nominal place is not between the fingers."""
     play: Spread
-    """Of the module in the fingers, drawn at every grip."""
+    """Play of the module in the fingers, drawn at every grip."""
     slip_force_n: float
     """Axial force from which the module slips in the fingers."""
     slip_mm_s: float
@@ -84,9 +84,9 @@ class CalibrationBoard(ChessboardPrint):
     """The chessboard, where the operator puts it for one or the other camera."""
 
     cell_T_board_mm_deg: Pose
-    """On its stand on the table, face up."""
+    """Pose of the board on its stand on the table, face up."""
     flange_T_board_mm_deg: Pose
-    """In front of the fingers, face away from the flange: it hides them and their marks."""
+    """Pose before the fingers, face away from the flange: it hides them and their marks."""
     placement: Spread
     """How far it is put beside either of them."""
 
@@ -101,7 +101,7 @@ class ReferencePlate(Section):
     fitter pushes the strip into the edge of this camera's picture, wherever the camera stands."""
     placement: Spread
     dots_mm: tuple[Pair, ...]
-    """As camera I sees them, from above."""
+    """Dots as camera I sees them, from above."""
     dot_diameter_mm: float
 
 
@@ -112,7 +112,7 @@ class OperatorHands(Section):
     """How far from stress-free the plug is left, per axis."""
     gauge_sigma_deg: float
     travel_mm_s: float
-    """To above the socket."""
+    """Speed of the way to above the socket."""
     plugging_mm_s: float
     farthest_mm: float
     """The plug has to be so near its socket: nobody jogs an arm through the whole cell."""

@@ -68,7 +68,7 @@ def chessboard_view(scenario: DeckScenario, seed: int, head: str, number: int) -
 def _random_view(
     scenario: DeckScenario, rig: StereoRig, rng: np.random.Generator
 ) -> RigidTransform:
-    """Over the depth of the stereo overlap, sideways, tilted and turned a little."""
+    """A pose within the stereo overlap: any depth, off to a side, tilted and turned a little."""
     board = scenario.chessboard
     side = rng.uniform(-1, 1, 2) * np.array(board.offset_mm)
     between = Rotation.from_euler("y", -_half_toe_in(rig))

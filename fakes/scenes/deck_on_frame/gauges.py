@@ -12,7 +12,7 @@ GAUGE_STEP_MM = 0.01
 
 
 def pin_offsets(parts: PartsTruth, frame_T_deck: RigidTransform) -> dict[str, dict[str, float]]:
-    """Of each pin hole: offset between deck and frame, largest plug gauge that passes both."""
+    """Offset between deck and frame, and largest plug gauge that passes both, for each pin hole."""
     frame_holes = {hole.name: hole for hole in parts.frame_holes}
     pins = {}
     for hole in parts.deck_holes:

@@ -56,7 +56,7 @@ def draw_parts(scenario: DeckScenario, seed: int, number: int) -> PartsTruth:
 
 
 def grip_slips(scenario: DeckScenario, seed: int, number: int) -> Iterator[RigidTransform]:
-    """By how much the ``number``-th deck slips in the gripper, start by start of a motion."""
+    """How far the ``number``-th deck slips in the gripper, at each start of a motion."""
     size_m = scenario.size_of("grip_slip") * MM
     rng = stream(seed, "grip slip", number)
     while size_m > 0:

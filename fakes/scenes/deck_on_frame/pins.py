@@ -26,7 +26,7 @@ class PinFaces:
     """Three rows each direction and pin: wall, chamfer, top."""
 
     points_m: Array
-    """In the deck's frame."""
+    """Positions in the deck's frame."""
     directions: Array
     anchors_m: Array
 

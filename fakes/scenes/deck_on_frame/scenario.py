@@ -57,7 +57,7 @@ class DeckPayload(Springs):
     deck_kg: float
     com_in_sensor_mm: Three
     gripper_com_in_sensor_mm: Three
-    """Without the deck."""
+    """Centre of mass of the gripper without the deck."""
 
 
 class Pins(Section):
@@ -71,7 +71,7 @@ class Pins(Section):
     chamfer_mm: float
     """Length along the axis, pin and hole together."""
     chamfer_deg: float
-    """Against the axis."""
+    """Angle of the chamfer to the axis."""
     stiffness_n_m: float
 
 
@@ -85,7 +85,7 @@ class Contact(Section):
     pads: int
     rim_inset_mm: float
     pins: Pins | None = None
-    """None as in the paper: no pins while mating, the holes are gauged afterwards."""
+    """None for the way of the paper: no pins while mating, the holes are gauged afterwards."""
 
 
 class TargetBoard(Section):
@@ -103,7 +103,7 @@ class Chessboard(ChessboardPrint):
     """Chessboard that is held under a head by hand."""
 
     distance_mm: Pair
-    """From the middle between the cameras."""
+    """Distance from the middle between the cameras."""
     offset_mm: Pair
     tilt_deg: float
     turn_rad: float

@@ -14,9 +14,9 @@ class PlateHole(Section):
     name: str
     kind: Literal["pin", "thread", "countersink"] = "pin"
     position_mm: Pair
-    """From the middle of the plate."""
+    """Position from the middle of the plate."""
     diameter_mm: float
-    """Of a plain bore, of the thread, or of the bore inside a countersink."""
+    """Diameter of a plain bore, of the thread, or of the bore inside a countersink."""
     countersink_mm: float | None = None
     """Outer diameter of the countersink."""
     through: bool = True
@@ -59,7 +59,7 @@ class PlateScenario(Scenario):
     plates: dict[str, Plate] = Field(default_factory=dict)
     boards: dict[str, PrintedBoard] = Field(default_factory=dict)
     payloads: dict[DeviceName, CarriedPayload] = Field(default_factory=dict)
-    """By the force sensor that they hang behind; a sensor without one carries nothing."""
+    """Payloads by the force sensor that they hang behind; a sensor without one carries nothing."""
 
     @model_validator(mode="after")
     def _payloads_hang_behind_sensors(self) -> Self:

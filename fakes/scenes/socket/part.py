@@ -49,7 +49,7 @@ def draw_part(scenario: SocketScenario, seed: int, number: int) -> PegPart:
 def fit_with(section: FitSection, faults: FaultBoard) -> Fit:
     """Shape with the faults that are injected now."""
     fit = nominal_fit(section)
-    # Without a hole no other fault of it has a meaning.
+    # Where there is no hole, its other faults have no meaning.
     if faults.active("hole_absent"):
         return replace(fit, hole_present=False)
     if (fault := faults.active("blocked")) is not None:
@@ -93,7 +93,7 @@ def nominal_fit(section: FitSection) -> Fit:
 
 
 def _by_m(fit: Fit, by_mm: float) -> float:
-    """By a little more than the clearance, where nothing else is asked for."""
+    """The size that is asked for, else a little more than the clearance."""
     return by_mm * MM if by_mm > 0 else fit.clearance_m + 0.05 * MM
 
 

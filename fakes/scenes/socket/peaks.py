@@ -13,7 +13,7 @@ _PLACES = {
     ]
     for window in WINDOWS_MS
 }
-"""Of the samples of a window in a ring of the longest one, by where the newest stands."""
+"""Places of a window's samples in a ring of the longest window, by the place of the newest one."""
 
 
 @dataclass(slots=True, eq=False)

@@ -22,9 +22,9 @@ class FitSection(Section):
     hole_chamfer_mm: float = Field(default=0.0, ge=0)
     peg_chamfer_mm: float = Field(default=0.0, ge=0)
     depth_mm: float = Field(gt=0)
-    """From the face to where the bottom of the peg rests."""
+    """Depth below the face at which the bottom of the peg rests."""
     outer_radius_mm: float | None = None
-    """Of a part that carries the hole and stands proud of its panel; None for a wide plate."""
+    """Radius of the part with the hole if it stands proud of its panel; None for a wide plate."""
     proud_mm: float | None = None
     friction: float = Field(default=0.2, ge=0, le=1)
     contacts: tuple[tuple[float, float], ...] = ()
@@ -44,7 +44,7 @@ class PegSection(Springs):
     grip_force_n: float = Field(gt=0)
     """Axial force at which the peg slips in the fingers."""
     mass_kg: float
-    """Of all that hangs behind the sensor."""
+    """Mass of everything that hangs behind the sensor."""
     com_in_sensor_mm: Three
 
 
@@ -57,7 +57,7 @@ class SocketSection(Section):
     """Radius within which 99 % of all holes truly lie; a normal draw."""
     height_spread_mm: float = Field(ge=0)
     tilt_spread_deg: float = Field(ge=0)
-    """About x and about y, each."""
+    """Half width of the tilt, about x and about y each."""
     yaw_spread_deg: float = Field(ge=0)
 
 

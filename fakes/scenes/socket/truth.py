@@ -22,7 +22,7 @@ def truth_of(world: "SocketScene") -> dict[str, Any]:
     within = math.hypot(x, y) < peg.fit.mouth_radius_m
     depth_mm = -z / MM if within else 0.0
     wrong = [name for name in _HOLE_FAULTS if world.faults.active(name)]
-    # By the hole that was wanted: deep in a wrong one is not seated.
+    # The depth is that of the hole that was wanted: a peg deep in a wrong one is not seated.
     seated = within and depth_mm > wanted.depth_m / MM - _SEAT_MM and not wrong
     return {
         "load": world.loads,

@@ -34,7 +34,7 @@ class _Moment:
     faults: dict[str, float]
     outcome: Outcome | None
     taking: asyncio.Task[Frame] | None = None
-    """From when the first camera needs it."""
+    """The picture that is being taken; None until the first camera needs it."""
     taken_by: set[int] = field(default_factory=set)
 
     def shared_by(self, lens: int, asked: Asked) -> bool:

@@ -29,7 +29,7 @@ LATE: Final[dict[str, str]] = {
     "dribbled": "it comes in packets of so many bytes (value), 2 ms between them",
 }
 OF_THE_PRODUCER: Final[tuple[Fault, ...]] = ("busy", "lost", "hang", "crash")
-"""Until they are cleared; a crash ends one process."""
+"""Faults that last until they are cleared; a crash ends one process."""
 _PACKET_S: Final = 0.002
 
 

@@ -33,7 +33,7 @@ class GentlRack:
         self._cameras = {name: self._made(name) for name in self._shown}
         every = [(name, n) for name, lenses in self._shown.items() for n in range(len(lenses))]
         self._lenses = [(self._cameras[name], lens) for name, lens in every]
-        """By the places of the cameras in the file."""
+        """Device and lens of each camera, in the order of the cameras in the file."""
         lenses = [self._shown[name][lens] for name, lens in every]
         self._file = FakeCameras(file, lenses, self._server.address)
 

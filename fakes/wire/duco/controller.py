@@ -57,7 +57,7 @@ class DucoController:
         while True:
             if self.logic.faults.active("cut"):
                 for writer in self._writers:
-                    # Not closed but cut: what is still in the buffer is lost with the line.
+                    # A line that is cut loses what is still in the buffer; closing would send it.
                     writer.transport.abort()
             self.logic.tick()
             await asyncio.sleep(_TICK_S)

@@ -99,7 +99,7 @@ class DucoLogic:
 
     # -- calls ----------------------------------------------------------------------------------
     def heartbeat(self, client: Client, time_ms: int) -> None:
-        """From now on this client must be heard again within this time."""
+        """Take note that this client must be heard again within a time from now on."""
         self._deadlines[client] = self.clock() + time_ms / 1000.0
 
     def stop(self) -> int:

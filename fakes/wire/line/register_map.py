@@ -104,7 +104,7 @@ def read_report(block: Sequence[int]) -> Report:
     if block[1] != MAP_VERSION:
         raise MapMismatch(f"map_version is {block[1]}, this program knows {MAP_VERSION}")
     number = struct.unpack(">f", struct.pack(">HH", *block[69:71]))[0]
-    # In a wrong order of words or bytes most fields would still look possible; of these three the
+    # In a wrong order of words or bytes most fields would still look possible. For these three the
     # values are known beforehand.
     patterns = (_u32(block, 67), round(number, 3), _text(block, 71, 3))
     if patterns != (0x12345678, 123.456, "ABCDEF"):

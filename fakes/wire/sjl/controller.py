@@ -203,7 +203,7 @@ class SjlController:
             self._post(self.logic.supervise(channel, fields, self._clock()))
 
     def _drop_others(self, channel: Channel) -> None:
-        """After a protocol violation the robot drops every channel, not only that one."""
+        """Drop every other channel as well: the robot does so after a protocol violation."""
         for other, sender in self._senders.items():
             if other != channel:
                 sender.close()
@@ -216,8 +216,8 @@ class SjlController:
             if not (record and self.faults.active("frozen_stat")):
                 record = encode(self._stat(count))
             sender.send(record)
-            # By the time that was due, or the rate would fall by what sending takes; never to make
-            # up for what was missed.
+            # The next record is due a period after this one was due, or the rate would fall by what
+            # sending takes; it is never sent earlier to make up for what was missed.
             due_s = max(due_s + _STAT_PERIOD_S, self._clock())
             await asyncio.sleep(max(due_s - self._clock(), 0.001))
 

@@ -121,7 +121,7 @@ class Stream:
         return ["TICK", *(str(count) for count in counts), *pose]
 
     def _stepped(self) -> Array:
-        """From where the arm was sent last towards the setpoint, by at most one step."""
+        """The pose one step, or less, from the last one that was sent towards the setpoint."""
         distance_m, angle_rad = matrix_distance(self._command, self._setpoint)
         ratio = min(
             1.0,

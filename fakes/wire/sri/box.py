@@ -65,7 +65,7 @@ class SriBox:
 
     async def start_slcan(self) -> str:
         """Offer CAN behind an slcan adapter on a pseudo terminal; returns its device file."""
-        # Only here, so that a box without CAN does not load python-can.
+        # The import stands here so that a box without CAN does not load python-can.
         from fakes.wire.sri.can_links import SlcanLink
 
         link = SlcanLink(self.core, self._clock)

@@ -11,7 +11,7 @@ from fakes.wire.sri.pty import PtyPort
 
 
 class BusLink(Link):
-    """On any bus of python-can, for instance ``can.Bus("name", interface="virtual")``."""
+    """A link on any bus of python-can, for instance ``can.Bus("name", interface="virtual")``."""
 
     def __init__(self, core: SriCore, clock: Clock, bus: can.BusABC) -> None:
         self._clock = clock

@@ -51,7 +51,7 @@ class Pacer(Generic[Item]):
         self._wake.set()
 
     async def run(self) -> None:
-        """Until cancelled."""
+        """Serve the link until this task is cancelled."""
         while True:
             due_s = self._session.due_s
             if due_s is None:

@@ -29,7 +29,7 @@ class DataFormat:
 
     @classmethod
     def parse(cls, text: str) -> "DataFormat":
-        """From ``(A01,…);E;1;(WMA:1)``; the filter part may be missing."""
+        """Read ``(A01,…);E;1;(WMA:1)``; the filter part may be missing."""
         match = _FORMAT.fullmatch(text)
         if match is None or not 1 <= int(match["points"]) <= 80:
             raise ValueError(text)

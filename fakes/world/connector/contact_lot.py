@@ -47,7 +47,7 @@ class MatingSizes:
 
     @classmethod
     def of(cls, drawing: ConnectorDrawing) -> "MatingSizes":
-        """As drawn."""
+        """Sizes as the drawing has them."""
         return cls(
             drawing.bore_play_m,
             drawing.capture_m,
@@ -80,7 +80,7 @@ class Mount:
 
     @property
     def stiffness(self) -> Array:
-        """Of x, y and the turn about the axis, N/m and N·m/rad."""
+        """Stiffness along x, along y and about the axis, in N/m and N·m/rad."""
         return np.array([self.lateral_n_m, self.lateral_n_m, self.lateral_n_m * _TURNING_M2])
 
 

@@ -49,7 +49,7 @@ class ConnectorDrawing:
     shell_m: float
     """Thickness of the shell round the insulator."""
     shell_over_tips_m: float
-    """By how much the plug's shell stands over the tips of its pins."""
+    """Height of the plug's shell over the tips of its pins."""
     insulator_colour: Colour
 
     def positions_m(self, kind: ContactKind) -> dict[str, tuple[float, float]]:

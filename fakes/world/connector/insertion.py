@@ -46,7 +46,7 @@ class PlugPlace:
     y_m: float = 0.0
     yaw_rad: float = 0.0
     tilt_rad: tuple[float, float] = (0.0, 0.0)
-    """About x and y."""
+    """Tilt about x and about y."""
     depth_m: float = 0.0
     inwards: bool = True
     """Contact springs rub against the motion."""
@@ -60,7 +60,7 @@ class Response:
     wrench: Array
     """N and N·m, shape (6,); z pushes the plug out."""
     deflection: Array
-    """By which the mount gives way: x, y (m), turn (rad)."""
+    """How far the mount gives way: x, y (m), turn (rad)."""
     side_n: Array
     """Wall force of each pin, shape (n,)."""
     axial_n: Array
@@ -131,7 +131,7 @@ def pressed(
 
 
 def _offsets(pair: MatingPair, place: PlugPlace) -> Array:
-    """Of each pin from the middle of its hole, the mount not giving way; shape (n, 2)."""
+    """Offset of each pin from the middle of its hole in a stiff mount, shape (n, 2)."""
     move = np.array([place.x_m, place.y_m, place.yaw_rad])
     return np.asarray(pair.pins_m - pair.holes_m + _moved(pair, move))
 

@@ -87,7 +87,7 @@ def gripper_marks(camera_T_marks: RigidTransform, *, reach_m: float = 24e-3) -> 
 
 
 def _speck(drawing: ConnectorDrawing, rng: np.random.Generator) -> SceneDirt:
-    """On the tips' plane or on the ground beside the contacts."""
+    """A speck of dirt in the plane z = 0, of random place, size, outline and brightness."""
     sides: Array = np.array(drawing.insulator_m[:2])
     x, y = rng.uniform(-0.5, 0.5, 2) * sides
     waves = rng.uniform(-0.25, 0.25, 2)

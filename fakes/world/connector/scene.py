@@ -20,11 +20,11 @@ class SceneContact:
 
     name: str
     root_m: tuple[float, float]
-    """Where the pin leaves the insulator; of a hole its middle."""
+    """Place where a pin leaves the insulator, or middle of a hole."""
     bend_m: tuple[float, float] = (0.0, 0.0)
-    """By which the tip is off its root."""
+    """Offset of the tip from its root."""
     present: bool = True
-    """False: the pin is missing; of a hole, that there is no hole."""
+    """False where the pin is missing or the hole was not made."""
     blocked: bool = False
     """A hole with something in it."""
     shine: float = 1.0
@@ -64,7 +64,7 @@ class SceneConnector:
     tip: Tip
     dirt: tuple[SceneDirt, ...]
     seed: int
-    """For the texture of the housing."""
+    """Seed of the housing's texture."""
 
 
 @dataclass(frozen=True, slots=True)

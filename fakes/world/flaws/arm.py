@@ -37,7 +37,7 @@ class Timing:
 
 @dataclass(frozen=True, slots=True)
 class ArmFlaws:
-    """None for what the arm does without."""
+    """The flaws of one arm; None for each that it does not have."""
 
     transmission: Transmission | None = None
     base_drift: ThermalDrift | None = None

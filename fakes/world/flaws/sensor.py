@@ -1,4 +1,4 @@
-"""Between the load on a six-axis sensor and its reading: what no linear calibration describes."""
+"""What of a six-axis sensor's reading no linear calibration describes."""
 
 import math
 from typing import Self
@@ -15,7 +15,7 @@ _STICKING = np.array([[0.02], [0.1], [0.5]])
 _RENEWED_EACH = 8
 """Milliseconds from one computation of non-linearity and hysteresis to the next, for speed."""
 _CUBIC = 1.5 * math.sqrt(3.0)
-"""Of x - x³, which is largest at 1 / sqrt(3), to give 1 there."""
+"""Factor by which x - x³, which is largest at 1 / sqrt(3), becomes 1 there."""
 
 
 class SensorFlaws:
@@ -40,8 +40,8 @@ class SensorFlaws:
         signs = np.where(rng.random(6) < 0.5, -1.0, 1.0)
         self._bend = nonlinearity * _CUBIC * signs * self._range
         self._limit = _STICKING * self._range
-        # Beyond the last of the frictions each branch is off by the sum of all limits, one to
-        # either side: hence the half.
+        # Beyond the last of the frictions each branch is off by the sum of all limits, the two in
+        # opposite directions; so half of it gives the wanted distance from branch to branch.
         self._share = np.full(3, 0.5 * hysteresis / float(_STICKING.sum()))
         self._follow = 1.0 - math.exp(-STEP_S / lag_s) if lag_s > 0 else 1.0
         self._load: Array | None = None

@@ -49,7 +49,7 @@ class Suspension:
         self.contacts = contacts
         self.state = np.zeros(12)
         self.normal_forces = np.zeros(len(contacts.stiffness_n_m))
-        """Of every row (N), negative where it pulls."""
+        """Normal force of every row (N), negative where it pulls."""
         self._held = np.zeros(len(contacts.stiffness_n_m), dtype=bool)
         self._propagators: dict[tuple[bytes, float], tuple[Array, Array]] = {}
 

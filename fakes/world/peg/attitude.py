@@ -20,7 +20,7 @@ def axis_of(tilt_x_rad: float, tilt_y_rad: float) -> Vector3:
 
 
 def pose_of(hole_T_peg: Array) -> Pose6:
-    """Of a 4x4 matrix: the peg is first turned about its axis, then tilted; below a right angle."""
+    """Pose from a 4x4 matrix: the peg is turned about its axis, then tilted by less than 90°."""
     (r00, _, sx, x), (r10, _, sy, y), (r20, _, sz, z), _ = hole_T_peg.tolist()
     level = math.hypot(sx, sy)
     stretch = math.atan2(level, sz) / level if level > 1e-12 else 1.0

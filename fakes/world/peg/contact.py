@@ -16,7 +16,7 @@ class Contact:
     lx: float
     ly: float
     lz: float
-    """From the tip to the place of contact."""
+    """Lever (lx, ly, lz) from the tip to the place of contact."""
     around_m: float = 0.0
     """Radius at which the normal turns when the peg moves across it; zero where it keeps."""
     up_m: float = 0.0

@@ -18,11 +18,11 @@ TO_CHAMFER: Final = math.sqrt(2.0) - 1.0
 """Slope of the line that halves the angle between a chamfer of 45° and the wall or face at it."""
 _HALF: Final = math.sqrt(0.5)
 _ROUNDS: Final = 3
-"""To the deepest azimuth in the chamfer."""
+"""Rounds that lead to the deepest azimuth in the chamfer."""
 _DESCENTS: Final = 8
 _ACROSS: Final = math.cos(math.pi / 8)
 _ALONG: Final = math.sin(math.pi / 8)
-"""Of the normal on the shoulder, between those of wall and chamfer."""
+"""Parts of the shoulder's normal, which halves the angle between those of wall and chamfer."""
 _ON_CHAMFER, _ON_WALL, _ON_SHOULDER = 16, 18, 44
 _OUTER: Final = 23
 """What the outer edge adds to these numbers."""
@@ -38,7 +38,7 @@ class Edge:
     number: int
 
     def contacts(self, tip: Vector3, axis: Vector3) -> Iterator[Contact]:
-        """At most one on the chamfer, one on the wall, two on the shoulder of the peg."""
+        """Contacts: at most one on the chamfer, one on the wall, two on the shoulder of the peg."""
         up = (self.level_m - tip[2]) / axis[2]
         offset = (tip[0] + up * axis[0], tip[1] + up * axis[1])
         found = [self._on_wall(tip, axis, up, offset)]
@@ -125,7 +125,7 @@ class Edge:
         )  # fmt: skip
 
     def _on_shoulder(self, tip: Vector3, axis: Vector3) -> Iterator[Contact]:
-        """Where the edge is as high on the peg as the end of its chamfer."""
+        """Contacts where the edge is as high on the peg as the end of its chamfer."""
         (x, y, z), (sx, sy, sz), edge = tip, axis, self.radius_m
         lean = math.hypot(sx, sy)
         lz = self.level_m - z

@@ -31,7 +31,7 @@ _FOUND_M: Final = 2e-8
 _FOUND_RAD: Final = 2e-6
 """Newton's last step. Within it forces are linear, and are carried along with it."""
 _CREEP: Final = [20e-6] * 3 + [1e-3] * 3
-"""By as much the peg moves where Newton finds nothing. Held in place, a free peg would look
+"""Largest motion of the peg where Newton finds nothing. Held in place, a free peg would look
 captured; let go at once, it would run away."""
 _DRAG: Final = np.array([10.0] * 3 + [1e-3] * 3)
 """N·s/m and N·m·s/rad: keeps a peg that nothing holds in place."""
@@ -51,12 +51,12 @@ class Equilibrium:
 
     pose: Pose6
     wrench: Array
-    """On the peg by what it touches, about its tip, in the axes of the hole: N, N·m, shape (6,)."""
+    """Wrench of what it touches, about its tip, in the axes of the hole: N, N·m, shape (6,)."""
     bristles: Bristles
     slots: tuple[int, ...]
-    """Active ones."""
+    """Slots that are in contact."""
     way: Pose6
-    """Of the peg in this step."""
+    """Motion of the peg in this step."""
     crept: int = 0
     """Steps in a row in which Newton failed and the peg crept."""
 

@@ -13,7 +13,8 @@ from fakes.world.peg.edges import edges_of
 from fakes.world.peg.fit import Fit
 
 _ROUNDS = 3
-"""From the crossing of two circles to that of an ellipse and a circle: error below 1e-9 m."""
+"""Rounds that turn the crossing of two circles into that of an ellipse and a circle: error
+below 1e-9 m."""
 _NEARLY_UPRIGHT = 0.9999
 """Cosine of a tilt up to which one round does."""
 _NEAR_AXIS = 0.01
@@ -107,7 +108,7 @@ def ring_point(
 def _crossings(
     tip: Vector3, axis: Vector3, rim: float, edge: float
 ) -> Iterator[tuple[int, float, float, float]]:
-    """Where the rim of the peg crosses a circle about the hole's axis, seen from above."""
+    """Places where the rim of the peg crosses a circle about the hole's axis, seen from above."""
     (x, y, z), (sx, sy, sz) = tip, axis
     from_hole = math.hypot(x, y)
     towards = math.atan2(-y, -x)

@@ -35,11 +35,11 @@ class Fit:
     peg_radius_m: float
     bore_radius_m: float
     depth_m: float
-    """Where the bottom of the peg rests, below the face."""
+    """Depth below the face at which the bottom of the peg rests."""
     hole_chamfer_m: float = 0.0
     peg_chamfer_m: float = 0.0
     outer_radius_m: float = math.inf
-    """Of the part that carries the hole and stands proud of its panel."""
+    """Radius of the part that carries the hole and stands proud of its panel."""
     proud_m: float = math.inf
     friction: float = 0.2
     normal_n_m: float = 2e7
@@ -67,12 +67,12 @@ class Fit:
 
     @property
     def rim_radius_m(self) -> float:
-        """Of the bottom circle of the peg."""
+        """Radius of the bottom circle of the peg."""
         return self.peg_radius_m - self.peg_chamfer_m
 
     @property
     def mouth_radius_m(self) -> float:
-        """Of the hole in the plane of the face."""
+        """Radius of the hole in the plane of the face."""
         return self.bore_radius_m + self.hole_chamfer_m if self.hole_present else 0.0
 
     @property

@@ -34,7 +34,7 @@ class HeldPeg:
         self._now = free_at(commanded)
         self._rests = False
         self.slip_m = 0.0
-        """By how far the peg was pushed into the fingers."""
+        """How far the peg was pushed into the fingers."""
         self.failures = 0
         """Steps in which the peg crept because no equilibrium was found."""
         self.steps = 0
@@ -42,12 +42,12 @@ class HeldPeg:
 
     @property
     def pose(self) -> Pose6:
-        """Where the peg is."""
+        """Pose of the peg."""
         return self._now.pose
 
     @property
     def wrench(self) -> Array:
-        """On the peg about its tip, in the axes of the hole (N, N·m), shape (6,)."""
+        """Wrench on the peg about its tip, in the axes of the hole (N, N·m), shape (6,)."""
         return self._now.wrench
 
     @property
@@ -73,7 +73,7 @@ class HeldPeg:
         self._rests = False
 
     def hold_with(self, grip_n: float) -> None:
-        """From now on the peg slips in the fingers at another axial force (N)."""
+        """Let the peg slip in the fingers at another axial force (N) from now on."""
         self._grip_n = grip_n
         self._rests = False
 
