@@ -56,7 +56,7 @@ def hanging_together() -> None:
 
 
 def images() -> None:
-    """From rendered images to the head, one calibration per seed."""
+    """Calibrate a head from rendered images, once for each seed."""
     print("| seed | views | rms px | absolute µm | without offset µm | board flat to µm (truth) |")
     print("|---|---|---|---|---|---|")
     for seed in range(3):

@@ -24,7 +24,7 @@ from tests.rigs.calibration.hand_eye_views import FLANGE_T_CAMERA, NOISE
 
 COUNTS = (8, 12, 20)
 _CHANCE = 0.001
-"""So seldom does a comparison of equals count as worse."""
+"""Share of comparisons of equals that count as worse."""
 _DRAWS = 2000
 
 Statistic = Callable[[Array], Array]

@@ -46,7 +46,7 @@ class PoseErrors:
     rotation_rad: float = NOISE.rotation_rad
     corner_px: float = SIGMA_PX
     hanging_px: float = 0.0
-    """Of an error that is smooth within a view and other in each, at the corners of the board."""
+    """Size of an error at the board's corners that is smooth within a view and differs by view."""
     draw: Draw = gaussian
 
 

@@ -44,7 +44,7 @@ def main(discs: int = 100, burst: int = 16, seed: int = 1) -> None:
 
 
 def rms_px(sensor: Sensor, light: Light, discs: int, burst: int, seed: int) -> dict[str, float]:
-    """Of all coordinates against truth, by way; both depths see the same exposures."""
+    """Error of all coordinates, by way; both depths see the same exposures."""
     rng = np.random.default_rng(seed)
     errors: dict[str, list[Array]] = {way: [] for way in WAYS}
     for _ in track(range(discs), f"{sensor.name}, {light.name}", transient=True):

@@ -39,7 +39,7 @@ class Soaked:
     times: int
     took_s: float
     daemon: tuple[Kept, Kept]
-    """After the warm-up, and at the end."""
+    """What it keeps after the warm-up, and at the end."""
     library: tuple[Kept, Kept] | None
     """The same of the library's process, where one lasted through the job."""
     left: str
@@ -146,12 +146,12 @@ async def _soaked(
 
 def _use_one_thread() -> None:
     """A pool that is still growing would look like threads that are kept."""
-    # Before a camera is opened: its process ends with the thread that has started it.
+    # This comes before a camera is opened: its process ends with the thread that has started it.
     asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(max_workers=1))
 
 
 def _kept(library: int) -> tuple[Kept, Kept]:
-    """Of this process and of the library's; the same twice where none lasts."""
+    """What this process and the library's keep; the same twice where none lasts."""
     return kept(os.getpid()), kept(library or os.getpid())
 
 

@@ -46,12 +46,12 @@ class Timed:
     """Pairs of one contender."""
 
     took_s: list[list[float]] = field(default_factory=list)
-    """From the trigger to both images, one list a round."""
+    """Times from the trigger to both images, one list a round."""
     late_s: list[float] = field(default_factory=list)
-    """From the end of the last exposure to both images in the hands of whoever asked."""
+    """Times from the end of the last exposure until the caller has both images."""
 
     def medians_s(self) -> NDArray[np.float64]:
-        """Of each round."""
+        """Median of each round."""
         return np.array([np.median(one) for one in self.took_s])
 
 

@@ -39,11 +39,11 @@ Way = Literal["frame server", "GenTL"]
 
 @dataclass
 class Cost:
-    """Of all pairs of one way."""
+    """What all pairs of one way cost."""
 
     took_s: list[float] = field(default_factory=list)
     processor_s: list[float] = field(default_factory=list)
-    """Of all processes together, a round's mean for each round."""
+    """Processor time of all processes together: the mean of each round."""
 
 
 def main(pairs: int = 12, rounds: int = 3) -> None:

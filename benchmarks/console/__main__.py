@@ -29,7 +29,7 @@ COMMANDS = (
     "check config/deck.toml",
 )
 RUNS = 20
-"""In the store whose runs are listed: as many as a list shows."""
+"""Runs in the store that is listed: as many as a list shows."""
 
 
 def program(command: str, store: Path) -> list[str]:

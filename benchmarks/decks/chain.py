@@ -35,7 +35,7 @@ class Outcome(StrEnum):
 
     GOOD = "good"
     REFUSED = "refused"
-    """By the loop, the plan or the mating, with a fault; nothing was called good."""
+    """The loop, the plan or the mating refused with a fault; nothing was called good."""
     FALSE = "called good, is not"
 
 
@@ -60,7 +60,7 @@ class Figures:
 
     @property
     def beyond(self) -> bool:
-        """Beyond what the demonstration lets a good part have."""
+        """True where the error is more than the demonstration lets a good part have."""
         true = {
             "lateral_mm": self.lateral_mm,
             "seat_gap_mm": self.gap_mm,
@@ -83,7 +83,7 @@ class Shipped:
 
     @classmethod
     def read(cls) -> Self:
-        """From config/."""
+        """Read what config/ says."""
         sensor = load_cell(CONFIG / "deck.toml").force_sensors["force"]
         return cls(Setting.shipped(), sensor, DeckScenario.read(SCENARIO))
 

@@ -21,21 +21,21 @@ from fakes.world.frames import Array
 SHIPPED_FACE_MM = np.array([1000.0, 500.0])
 SHIPPED_LEGS_MM = 100.0
 LARGE_LEGS_MM = 150.0
-"""With room for the tolerance of the station, the field of a head holds no larger triangle."""
+"""A head's field holds no larger triangle beside the tolerance of the station."""
 MIDDLE_OF_TRIANGLE_MM = np.array([46.7, 86.7])
-"""Of the shipped holes, from the corner: there the heads look."""
+"""Middle of the shipped holes, from the corner; the heads look there."""
 GRIPPER_KG, GRIPPER_COM_MM = 150.0, np.array([38.0, 25.0, 385.0])
 DECK_COM_MM = np.array([6.0, 5.0, 445.0])
-"""In the sensor, as in the shipped scenario."""
+"""Centre of mass in the sensor's frame, as in the shipped scenario."""
 GRIPPER_INERTIA = np.array([8.0, 9.0, 6.0])
 SENSOR_RANGE_N = 5000.0
 RANGE_IN_USE = 0.8
-"""Of the sensor's range, for the weight that hangs on it: the rest is for what else happens."""
+"""Share of the sensor's range that the hanging weight may use; contact needs the rest."""
 WEAK_AXIS_DEG = 0.0037
 """What two triangles of 100 mm tell of the rotation about the line between them: standard deviation
 (docs/metrology.md, "Triangles of 100 mm")."""
 SHARE_OF_ONE_PART = 0.3
-"""Of a threshold, that each part's own standard deviation may use."""
+"""Share of a threshold that each part's own standard deviation may use."""
 LEAST_THRESHOLD_DEG = 0.006
 LEFT_FOR_STRAIGHT_TRAVEL_MM = 0.03
 
@@ -49,7 +49,7 @@ class Deck:
     """Along x, from one head to the other."""
     width_m: float
     legs_mm: float = SHIPPED_LEGS_MM
-    """From the pin hole to each of its neighbours."""
+    """Distance from the pin hole to each of its neighbours."""
 
     @property
     def key(self) -> str:
@@ -63,12 +63,12 @@ class Deck:
 
     @property
     def half_diagonal_m(self) -> float:
-        """From the middle to a corner."""
+        """Distance from the middle to a corner."""
         return hypot(self.length_m, self.width_m) / 2
 
     @property
     def head_shift_mm(self) -> Array:
-        """By how much the second head looks farther out than on the shipped deck."""
+        """How much farther out the second head looks than on the shipped deck."""
         inward_mm = MIDDLE_OF_TRIANGLE_MM * (self.legs_mm / SHIPPED_LEGS_MM - 1.0)
         return np.asarray((self.face_mm - SHIPPED_FACE_MM) / 2 - inward_mm)
 

@@ -92,7 +92,7 @@ class Bench:
         self.plc.command(0, mode=1)
 
     def signal(self, whom: str, number: signal.Signals) -> None:
-        """To the daemon alone, to its guards, or to its vision workers."""
+        """Send a signal to the daemon alone, to its guards, or to its vision workers."""
         if whom == "daemon":
             self.daemon.process.send_signal(number)
             return
@@ -173,7 +173,7 @@ class Bench:
         timeout_s: float = 60.0,
         ends: frozenset[str] = OVER,
     ) -> Shown:
-        """Until the line sees it; ``NotReached`` when it ends elsewhere or takes too long."""
+        """Wait until the line sees it; ``NotReached`` when it ends elsewhere or takes too long."""
         deadline = time.monotonic() + timeout_s
         while time.monotonic() < deadline:
             shown = self.plc.shown()

@@ -24,7 +24,7 @@ def shifted_utc_now() -> datetime:
 
 
 if __name__ == "__main__":
-    # Before anything else is imported: the other modules take the function by its name.
+    # The other modules import the function by its name, so it is replaced before they are imported.
     clock.utc_now = shifted_utc_now
     from cellctl.cli.app import main
 

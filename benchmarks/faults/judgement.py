@@ -21,7 +21,7 @@ class Judgement:
     """Figures of one cell of the table, and everything that is wrong with it."""
 
     standstill_s: float | None
-    """From the fault to the end of the last motion; None if it never ended."""
+    """Time from the fault to the end of the last motion; None if it never ended."""
     travel_mm: float
     """The longest way of any arm after the fault."""
     turn_deg: float
@@ -57,7 +57,7 @@ def judge(seen: Observation) -> Judgement:
 
 
 def _greatest(motions: Sequence[Moved], size: Callable[[Moved], float]) -> float:
-    """Of the arms, each with all its motions together."""
+    """The largest sum over the motions of one arm."""
     arms = {motion.arm for motion in motions}
     sums = [sum(size(motion) for motion in motions if motion.arm == arm) for arm in arms]
     return max(sums, default=0.0)

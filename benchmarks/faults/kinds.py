@@ -35,9 +35,9 @@ class Fault:
     begin: Begin
     effect: Effect = Effect.AT_ONCE
     bound_s: float = STOP_S
-    """Until all motion has ended: detection, stop latency, and 0.8 s of a joint ramp."""
+    """Longest time until all motion has ended: detection, stop latency, 0.8 s of a joint ramp."""
     patience_s: float = 60.0
-    """Until the line has seen where it ends."""
+    """Longest time until the line has seen where it ends."""
     silent_s: float = 0.0
     """The line sees nothing for so long; then the fault goes over by itself (``resume``)."""
     noticed_s: float = 0.0
@@ -46,7 +46,7 @@ class Fault:
     line_silent: bool = False
     """The line sees nothing until the daemon is started again."""
     may_restart: bool = False
-    """After it, the daemon has to be started again: its fault says so."""
+    """Whether the daemon has to be started again afterwards; its fault says so then."""
     reason_not: Callable[[Phase], str | None] = lambda _phase: None
     """Why there is nothing to see in a phase."""
 

@@ -45,7 +45,7 @@ class Phase:
     """A lost line stops here at once instead of before the next move."""
     has_record: bool = True
     fresh: bool = False
-    """Only in a cell in which nothing has moved yet."""
+    """Whether the phase needs a cell in which nothing has moved yet."""
     starts: bool = False
     """Nothing is under way: Start is given when the fault is there."""
 
@@ -118,7 +118,7 @@ def _back_off(bench: Bench) -> str:
 
 
 def _lift_off(bench: Bench) -> str:
-    """After an abort in contact: the arm presses on the frame."""
+    """Lift off after an abort in contact, with the arm pressing on the frame."""
     _contact(bench)
     bench.command("Abort")
     bench.until("Aborted", lambda shown: shown.state == "Aborted")
@@ -130,7 +130,7 @@ def _lift_off(bench: Bench) -> str:
 
 
 def _reset_home(bench: Bench) -> str:
-    """After a stop on the way to the measuring pose: no contact, and a long way home."""
+    """Go home after a stop on the way to the measuring pose: no contact, and a long way."""
     _step_moves(20, bench)
     bench.command("Stop")
     bench.plc.done(30)

@@ -15,7 +15,7 @@ from cellctl.version import software
 from fakes.demo.control import Refused
 
 QUIET_S = 2.0
-"""So long the arms are watched after the end: a motion that begins by itself would be seen."""
+"""Time for which the arms are watched after the end, to see a motion that begins by itself."""
 STANDS_S = 2.5
 """An arm that has not moved for so long stands, while the line sees nothing."""
 
@@ -164,7 +164,7 @@ def _next_start(bench: Bench, fault: Fault) -> _Found:
 
 
 def _tidy(bench: Bench) -> None:
-    """As an operator leaves the cell for the next job; what fails is found by the next trial."""
+    """Tidy up as an operator does for the next job; what fails is found by the next trial."""
     with suppress(Refused, NotReached, *LINE_FAILURES):
         bench.acknowledge()
         bench.next_parts()

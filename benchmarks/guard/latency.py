@@ -1,4 +1,4 @@
-"""From the sample on the wire to the stop request on the wire: ``make bench-guard``.
+"""Times from the sample on the wire to the stop request on the wire: ``make bench-guard``.
 
 Box and robot are processes of their own that stamp with the same monotonic clock; every frame
 under force gives one stop request. Measured for the guard process and for the plain design, idle,
@@ -137,7 +137,7 @@ def verdicts(rows: list[Row]) -> list[tuple[str, bool | None]]:
 
 
 def table(rows: list[Row]) -> str:
-    """For the terminal."""
+    """The table that the terminal shows."""
     head = (
         f"{'load':8}{'design':8}{'samples':>8} │"
         f"{'clean p50':>10}{'p99':>10}{'p99.9':>10}{'max':>9} │"

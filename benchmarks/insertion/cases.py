@@ -32,7 +32,7 @@ def _pin(
     stiffness_n_m: float = 1e6,
     chamfer_mm: float = 0.0,
 ) -> SearchCase:
-    """Per cent of spiral, tilted valley and particle map."""
+    """A case with the per cents found by spiral, tilted valley and particle map."""
     chamfer_m = chamfer_mm * 1e-3
     fit = FitGeometry(3e-3, clearance_mm * 1e-3, chamfer_m, chamfer_m, 12e-3)
     cell = replace(STUDY_CELL, stiffness_n_m=stiffness_n_m, uncertainty_m=u_mm * 1e-3)

@@ -67,7 +67,7 @@ class ContactTrap:
     """What the verdict says."""
     fault: str
     seated: bool
-    """By the truth: at the seat of a hole as drawn."""
+    """True where the peg truly is at the seat of a hole as drawn."""
     by_curve: str
     """What `cellctl judge-insertion` says of the ticks, or the number of its fault."""
     curve: str
@@ -105,7 +105,7 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
         clock=lambda: world.now_s,
     )
     if made.sensor is not None:
-        # In the middle of a feed, with whatever is felt there.
+        # The failure begins in the middle of a feed, with whatever is felt there.
         made.sensor.begins_s = world.now_s + float(rng.uniform(1.0, 8.0))
 
     async def begin(phase: CyclePhase, _words: str) -> None:

@@ -28,7 +28,7 @@ from fakes.world.peg.held_peg import HeldPeg
 
 STEP_S = 1e-3
 PERIOD_S, DELAY_TICKS, LAG_S = 8e-3, 1, 5e-3
-"""Of the stream; with the filter of 2 ms a dead time of 27 ms, as on the wire."""
+"""Timing of the stream; with the filter of 2 ms it has a dead time of 27 ms, as on the wire."""
 LIMITS = StreamLimits(step_m=5e-4, step_rad=5e-3, travel_m=0.1, travel_rad=0.5, loss_s=0.2)
 _BANDWIDTH_HZ = 200.0
 _WANDER_LENGTH_M = 5e-3
@@ -47,7 +47,7 @@ def robot_stiffness(arm: CompliantArm) -> Array:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Imperfections:
-    """Of arm and sensor; standard deviations."""
+    """Imperfections of arm and sensor, as standard deviations."""
 
     repeatability_m: float
     height_m: float
@@ -61,11 +61,11 @@ class SensorFault:
     def __init__(self, told: Callable[[Array, Array], Array]) -> None:
         """``told``: what it tells for a true sample and for the last one before the fault."""
         self.begins_s = np.inf
-        """On the clock of the world; set by whoever knows when."""
+        """Beginning on the clock of the world; set by whoever knows when."""
         self._told, self._last = told, np.zeros(6)
 
     def tell(self, sample: Array, now_s: float) -> Array:
-        """For one true sample, shape (6,)."""
+        """What the sensor tells for one true sample, shape (6,)."""
         if now_s < self.begins_s:
             self._last = sample
             return sample
@@ -116,7 +116,7 @@ class ContactWorld:
 
     @property
     def seated(self) -> bool:
-        """By the truth: within 0.3 mm of the drawn seat, in the mouth of a hole as drawn."""
+        """True for a peg within 0.3 mm of the drawn seat, in the mouth of a hole as drawn."""
         x, y, z, *_ = self.peg.pose
         within = np.hypot(x, y) < self._drawn.mouth_radius_m
         same = abs(self.fit.bore_radius_m - self._drawn.bore_radius_m) < _SAME_BORE_M
@@ -167,7 +167,7 @@ class ContactWorld:
         self._error_m = keep * self._error_m + fresh
 
     def noise(self) -> Array:
-        """Of a block of samples of the sensor, shape (n, 6)."""
+        """Noise of a block of samples of the sensor, shape (n, 6)."""
         one = self._imperfections
         sigma = np.repeat([one.force_n, one.moment_nm], 3)
         return np.asarray(self._rng.normal(0.0, 1.0, (_BLOCK, 6)) * sigma)
@@ -211,7 +211,7 @@ class InsertionGuard:
         self._wrenches: list[Array] = []
 
     def give_in(self, frames: ContactFrames) -> TareResult:
-        """From now on about the tip of these frames, as after a tare at standstill."""
+        """Give forces about the tip of these frames from now on, as after a tare at standstill."""
         self._frames = frames
         self._times, self._wrenches = [], []
         for _ in range(60):

@@ -22,7 +22,7 @@ from fakes.scenes.socket.peaks import ForcePeaks
 CELLS = ("pin", "connector")
 TRIALS, QUICK_TRIALS = 300, 4
 _SEARCH_RATIO = 1.5
-"""Of the search force, that a mean over 20 ms may reach in the search (R3 of the study)."""
+"""Multiple of the search force that a 20 ms mean may reach in the search (R3 of the study)."""
 
 Job = tuple[str, int]
 """Cell and seed."""

@@ -72,7 +72,7 @@ class CycleCell:
 
     @property
     def imperfections(self) -> Imperfections:
-        """Of its arm, as the task states them, and of its sensor."""
+        """Imperfections of its arm, as the task states them, and of its sensor."""
         stated = self.plan.task.cell
         sensor = self.scenario.force_sensors[self.scenario.peg.force_sensor]
         return Imperfections(
@@ -87,20 +87,20 @@ class CycleOutcome:
     seed: int
     called_good: bool = False
     seated: bool = False
-    """By the truth, when the cell gave its verdict or its fault."""
+    """True where the peg truly was at its seat when the cell gave its verdict or its fault."""
     fault: str = ""
     search_s: float = float("nan")
     cycle_s: float = 0.0
     peaks: dict[CyclePhase, ForcePeaks] = field(default_factory=dict)
     """True forces of each phase."""
     height_m: float = 0.0
-    """Of the peg's tip over the face at the end."""
+    """Height of the peg's tip over the face at the end."""
     curve: str = ""
     """Ticks from the face on, as the record of a run has them."""
     part: JudgedPart | None = None
     """What the record says to whoever judges the curve later."""
     unsolved_share: float = 0.0
-    """Of the steps in contact: those in which the model found no equilibrium."""
+    """Share of the steps in contact in which the model found no equilibrium."""
 
     def peak_n(self, phase: CyclePhase, window_ms: int) -> float:
         """0 for a phase that was not reached."""

@@ -30,7 +30,7 @@ class Line(Generic[Job, Result]):
     """How a result is kept."""
 
     written: Callable[[Job, Result], Mapping[str, Any]]
-    """As plain data, with what tells its job."""
+    """Makes plain data of a result, with what tells its job."""
     read: Callable[[Mapping[str, Any]], tuple[Job, Result]]
 
 
@@ -46,7 +46,7 @@ def pin_cell() -> CycleCell:
 
 
 def parser_of(text: str | None, what: str, trials: int) -> argparse.ArgumentParser:
-    """With the options that all campaigns have."""
+    """A parser with the options that all campaigns have."""
     parser = argparse.ArgumentParser(description=text)
     parser.add_argument("--quick", action="store_true", help=f"few {what}")
     parser.add_argument("-n", type=int, help=f"{what} of each case, default {trials}")

@@ -37,7 +37,7 @@ def _run(job: Job) -> ContactTrap:
 
 
 def _written(_: Job, trap: ContactTrap) -> Mapping[str, Any]:
-    """Without the curve, which is long."""
+    """The result without its curve, which is long."""
     return {name: value for name, value in asdict(trap).items() if name != "curve"}
 
 

@@ -17,7 +17,7 @@ from tests.rigs.insertion.kinematic import KinematicMotions
 from tests.rigs.insertion.surface import Truth
 
 LIMIT_S = 120.0
-"""Of the reference's table, for all strategies alike."""
+"""Time limit of the reference's table, for all strategies alike."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +25,7 @@ class SearchTrialOutcome:
     """What came of one search."""
 
     found: bool
-    """By the truth: the tip stands over the hole."""
+    """True where the tip truly stands over the hole."""
     false_entry: bool
     """The strategy says that the peg has entered, the truth says no."""
     time_s: float

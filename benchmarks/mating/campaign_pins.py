@@ -25,7 +25,8 @@ LIMIT_N = 50.0
 WORKERS = 2
 RESULT = Path("runs") / "campaign-mating-pins.json"
 BESIDE_MM = (0.04, 0.15)
-"""From the clearance to the middle of the chamfer; the measuring loop allows 0.05 on each axis."""
+"""Offsets from the clearance to the middle of the chamfer; the measuring loop allows 0.05 per
+axis."""
 YAW_DEG = 0.008
 
 

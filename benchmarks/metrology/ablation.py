@@ -95,7 +95,7 @@ def changed(module: Any, name: str, change: Callable[[Function], Function]) -> R
 
 
 def no_covariance(of_problem: Any, *_: object) -> Any:
-    """Of centres and radius, for a problem of one or two views."""
+    """A covariance of zeros for centres and radius, in a problem of one or two views."""
     size = 2 * len(of_problem.views) + 1
     return np.zeros((size, size))
 

@@ -227,4 +227,4 @@ HELD_BACK = {
     "JPEG": Condition(sensor=_jpeg),
     "worn edges": Condition(worn=_worn),
 }
-"""Only measured, never developed on."""
+"""Conditions that are only measured; nothing was developed on them."""

@@ -11,7 +11,7 @@ from benchmarks.metrology.drawn_looks import DARK, PLATE, Array, Look
 
 _INSTANTS = 401
 _BRIGHTEST = 330.0
-"""Beyond what the sensor can show."""
+"""Grey level that is more than the sensor can show."""
 
 
 def _along_a_path(rng: Draw, sub: int, unevenness: float) -> NDArray[np.float32]:

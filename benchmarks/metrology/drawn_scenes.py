@@ -38,7 +38,7 @@ class _Rig:
     distance_m: float
     distortion: tuple[float, float, float, float, float]
     scale: float
-    """Of the layout."""
+    """Scale of the layout."""
 
 
 _RIGS = (

@@ -28,8 +28,8 @@ from fakes.world.frames import from_written
 
 SCENARIO = Path(__file__).parents[2] / "config" / "deck.scenario.toml"
 FRAME_S = 1.137
-"""From one pair of images to the next, as in the demonstration on a free machine; no multiple of
-the period with which the arms sway."""
+"""Time from one pair of images to the next, as in the demonstration on a free machine; it is no
+multiple of the period with which the arms sway."""
 SETTLE_S = 1.5
 SPEED_M_S, ACCELERATION_M_S2 = 0.05, 0.2
 
@@ -56,7 +56,7 @@ class FakeStation:
         self._to_taught("main", "deck_measure")
 
     def base_T_flange(self) -> RigidTransform:
-        """Of the main robot, as it reports it."""
+        """Pose of the main robot's flange, as the robot reports it."""
         return self.world.arms["main"].encoder_pose(self.world.time_s)
 
     def move_flange(self, base_T_flange: RigidTransform) -> None:

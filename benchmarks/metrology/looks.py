@@ -44,7 +44,7 @@ SEEN_UNDER_CONDITIONS = (
 the target (docs/metrology.md, "What a narrow ring costs")."""
 _FIRST_SEED = 1000
 MOST_P95_PX, HONEST, MOST_REFUSED = 0.05, (0.8, 1.25), 0.02
-"""Of the held-back half: centres, error² over its degrees of freedom, refused pairs."""
+"""Bounds for the held-back half: centres, error² over its degrees of freedom, refused pairs."""
 
 
 def measure(scene: Scene, errors: HoleErrors, method: Method, *, skip: int = 1) -> str | None:

@@ -24,7 +24,7 @@ _LOOK_M = 0.001
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Of one random cell."""
+    """What came out for one random cell."""
 
     seed: int
     reason: str
@@ -32,7 +32,7 @@ class Outcome:
     seconds: float
     points: int
     least_slack_mm: float
-    """By MuJoCo, over all ways of the cell; infinite for a cell that was refused."""
+    """Smallest slack that MuJoCo found on all ways; infinite for a cell that was refused."""
 
 
 def try_cell(seed: int, look_m: float = _LOOK_M, search_s: float = 20.0) -> Outcome:
@@ -55,7 +55,7 @@ def try_cell(seed: int, look_m: float = _LOOK_M, search_s: float = 20.0) -> Outc
 
 
 def _least_slack_m(scene: CellScene, way: PlannedWay, look_m: float) -> float:
-    """With the other arms at all combinations of the poses that the way was planned for."""
+    """Smallest slack, the other arms at all combinations of the poses that the way allows for."""
     oracle = MujocoOracle(scene)
     if way.robot == "main":
         heads = [[(name, pose) for pose in ("measuring", "retracted")] for name in _heads(scene)]

@@ -36,7 +36,7 @@ class RandomCell:
     frame_shift_m: Array
     """Shape (3,), of frame and station."""
     heads_shift_m: Mapping[str, Array]
-    """Of the bases of the arms that carry the heads, each of shape (3,)."""
+    """Shifts of the bases of the arms that carry the heads, each of shape (3,)."""
     deck_m: tuple[float, float, float]
     obstacles: tuple[Solid, ...]
 

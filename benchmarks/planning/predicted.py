@@ -36,7 +36,7 @@ CELL_FILE = SCENARIO.parent / "deck.toml"
 FRAMES = 2
 HONEST = (0.8, 1.25)
 _SWAY_HZ = 12.0
-"""Of the fake cell (``fakes.world.flaws.camera``): a pure sine."""
+"""Frequency at which the fake cell sways (``fakes.world.flaws.camera``): a pure sine."""
 
 
 def prediction(scenario: DeckScenario) -> PredictedPose:

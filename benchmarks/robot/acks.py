@@ -1,4 +1,4 @@
-"""From the call of a motion to its acceptance, beside a bare socket: ``make bench-robot``.
+"""Times from the call of a motion to its acceptance, beside a bare socket: ``make bench-robot``.
 
     python -m benchmarks.robot.acks --calls 300 --out build/acks.json
 
@@ -38,7 +38,8 @@ from tests.rigs.wire.sjl_rig import arm_settings
 
 STEP_M, SPEED_M_S = 0.0002, 0.02
 RECORD_BYTES = 119
-"""Of a command to the jobs. The others are of this order, and a piece of one packet all of them."""
+"""Size of a command to the jobs. The other records are about as long, and each fits into one
+packet."""
 SLOW = {"stale_s": 2.0, "silence_s": 3.0, "reply_timeout_s": 5.0}
 """Time-outs of the driver that a busy PC does not reach."""
 
@@ -77,7 +78,7 @@ class Accepted:
 
     @contextmanager
     def noted(self) -> Iterator[None]:
-        """As long as the context lasts both drivers write the note."""
+        """Have both drivers write the note as long as the context lasts."""
         acknowledged = self._noting(RunningCommand.acknowledged, first=False)
         # The answer of the remote interface is the number of a task. The driver has it when it
         # asks, at once, whether the guard has stopped the arm.
@@ -162,7 +163,7 @@ async def measure(way: str, calls: int) -> list[AckRow]:
                     await move()
                 if accepted.time_s > start_s:
                     times[name].append(accepted.time_s - start_s)
-        # Until the far end has hung up too: nothing is left open when it is told to end.
+        # Wait until the far end has hung up too: nothing is left open when it is told to end.
         writer.write_eof()
         await reader.read()
         writer.close()

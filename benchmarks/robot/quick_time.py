@@ -27,7 +27,7 @@ class _JumpingSelector(selectors.DefaultSelector):
         self._jump = jump
 
     def select(self, timeout: float | None = None) -> list[tuple[selectors.SelectorKey, int]]:
-        """As every selector; without a timer it really waits."""
+        """Select as every selector does; without a timer it really waits."""
         for _ in range(_LOOKS):
             if (events := super().select(0)) or timeout == 0:
                 return events

@@ -49,7 +49,7 @@ async def round_trips(bench: Bench, count: int) -> dict[str, Figures]:
 
     jobs = {"bare socket": echo, "one call": ask, "six calls in one piece": ask_six}
     times: dict[str, list[float]] = {name: [] for name in jobs}
-    # In turn, so that whatever the machine does beside meets all of them alike.
+    # The jobs take turns, so that whatever the machine does beside meets all of them alike.
     for _ in range(count):
         for name, job in jobs.items():
             start_s = time.perf_counter()
@@ -63,7 +63,7 @@ async def round_trips(bench: Bench, count: int) -> dict[str, Figures]:
 async def stop_by(
     bench: Bench, stop: Callable[[], Awaitable[None]], repeats: int
 ) -> dict[str, Figures]:
-    """From the decision to the arm's order to stop, and to its standstill."""
+    """Times from the decision to the arm's order to stop, and to its standstill."""
     ordered, standing = [], []
     for _ in range(repeats):
         bench.move()
@@ -77,7 +77,7 @@ async def stop_by(
 
 
 async def stops(bench: Bench, repeats: int) -> dict[str, dict[str, Figures]]:
-    """By the daemon's driver, by the guard, and by heartbeats that stay away."""
+    """Times of stops by the daemon's driver, by the guard, and by heartbeats that stay away."""
     guard = bench.guard()
     result: dict[str, dict[str, Figures]] = {}
     await asyncio.sleep(FORGOTTEN_S)

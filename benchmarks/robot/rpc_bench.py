@@ -18,8 +18,8 @@ PERCENTILES = (50, 99, 100)
 REARM_S = 10.0
 HEARTBEAT_MS = 400
 FORGOTTEN_S = 2.0 * HEARTBEAT_MS / 1000
-"""After so long the controller has missed the heartbeats of a client that has gone, and done what
-it does then; it would disturb the next measurement."""
+"""Time after which the controller has missed the heartbeats of a client that has gone, and has done
+what it does then; before, that would disturb the next measurement."""
 CONTROLLER = {
     "host": "127.0.0.1", "tool": "flange", "work_frame": "base", "euler": "fixed-xyz",
     "stop_word": 1, "rearm_word": 2, "heartbeat_ms": HEARTBEAT_MS,
@@ -69,7 +69,7 @@ class Bench:
 
 
 async def rearm(robot: SiasunRpcRobot) -> None:
-    """As an operator does: again until the link is back and the arm stands."""
+    """Reset as an operator does: again until the link is back and the arm stands."""
     async with asyncio.timeout(REARM_S):
         while True:
             with contextlib.suppress(CellError):

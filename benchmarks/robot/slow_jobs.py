@@ -1,4 +1,4 @@
-"""From which time of a statement on the job program no longer keeps its promises.
+"""Finds how slow statements may be before the job program no longer keeps its promises.
 
     python -m benchmarks.robot.slow_jobs --out build/slow-jobs.json
 
@@ -37,12 +37,12 @@ class Row:
 
     statement_ms: float
     trials: int
-    """For each cause."""
+    """Number of trials for each cause."""
     report_ms: Three
     begin_ms: Three
     stop_ms: dict[str, Three]
     stopped_alive: dict[str, int]
-    """Of the trials with a PC that is there."""
+    """Trials with a PC that is there in which the arm stopped, by cause."""
 
 
 async def measure(statement_ms: float, trials: int, seed: int) -> Row:

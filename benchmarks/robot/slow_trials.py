@@ -17,9 +17,9 @@ from tests.rigs.wire.job_rig import JobRig, job_rig
 
 SPEED_M_S = 0.02
 LATE_S = 0.25
-"""By which one answer of a PC that is alive comes late: less than its dead man's time."""
+"""How late one answer of a PC that is alive comes: less than its dead man's time."""
 STATEMENTS_A_ROUND = 110
-"""Of a background job, roughly: a cause comes anywhere within so many statements."""
+"""Statements in a round of a background job, roughly: a cause comes at any of them."""
 ROUNDS_A_MOTION = 6
 ENDLESS_S = 60.0
 LIMITS = {
@@ -191,7 +191,7 @@ async def _stopped(slow: Slow, cause: Cause, statement_s: float, report_ms: floa
     ends: set[asyncio.Future[Any]] = {braked, move}
     await asyncio.wait(ends, timeout=ENDLESS_S, return_when=asyncio.FIRST_COMPLETED)
     causing.cancel()
-    # Without a link nobody waits for the end of a stop.
+    # Without a link nobody waits until the stop has ended.
     for wire in rig.wires.values():
         wire.reset()
     await asyncio.gather(causing, move, return_exceptions=True)

@@ -38,7 +38,7 @@ REARM_S = 30.0
 _BEFORE = 0.3
 """Share of the faults that come before the motion, which may then begin on an old state."""
 PAUSE_S = 0.05
-"""Between two tries of an operator to acknowledge."""
+"""Time between two tries of an operator to acknowledge."""
 
 
 @dataclass
@@ -146,7 +146,7 @@ class Soak:
             await asyncio.sleep(0.005)
 
     async def _release(self) -> None:
-        """As an operator does: again until the link is back and the controller accepts."""
+        """Reset as an operator does: again until the link is back and the controller accepts."""
         began_s = time.monotonic()
         while time.monotonic() - began_s < REARM_S:
             try:
@@ -162,7 +162,7 @@ class Soak:
         self._count.not_released += 1
 
     async def _fresh(self) -> None:
-        """Until the state says so too; ``LinkError`` where it has no news."""
+        """Wait until the state says so too; ``LinkError`` where it has no news."""
         for _ in range(40):
             if self._soaked.robot.state(STALE_S).ready:
                 return

@@ -33,7 +33,7 @@ class Soaked:
     revive: Callable[[], None]
     """What a person does at the pendant when a job has ended in an alarm."""
     begin_s: float
-    """From a command to the motion at the most, without faults: the time of the job program."""
+    """Longest time from a command to its motion without faults: that of the job program."""
     known: dict[str, Inject]
     """What can go wrong."""
     begun_s: list[float] = field(default_factory=list)
@@ -112,8 +112,8 @@ _SJL = _WIRE | _KEY | {
     "emergency stop": _inject("emergency_stop"),
 }  # fmt: skip
 _RPC = _WIRE | _KEY | {
-    # Only of replies: a bit of a call may make it another call, of which nobody can know, since the
-    # service has no sum.
+    # Only replies are changed: with another bit a call may become another call, and nobody can
+    # know, since the service has no check sum.
     "bit flipped": lambda s, rng: setattr(_one(s, rng).back, "corrupt_in", rng.randrange(400)),
     "state frames stop": _inject("frames_stop"),
     "motion answered with -1": _inject("minus_one", count=1),

@@ -28,8 +28,8 @@ STATEMENT_S = 0.001
 WATCHDOG_MS = 300
 DEADMAN_MS = 300
 ROUND_MS = 150.0
-"""Of a background job at 1 ms a statement: a hundred statements, the wait for a record, and half as
-much again."""
+"""Round of a background job at 1 ms a statement: a hundred statements, the wait for a record, and
+half as much again."""
 HOST_MS = 50.0
 """What a busy PC may need for one write and its wire."""
 SLOW: dict[str, Any] = {

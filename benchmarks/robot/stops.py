@@ -79,7 +79,7 @@ async def once(way: Way, turn: int) -> float:
             await ready.stop()
             while not ordered_s:  # noqa: ASYNC110  likewise
                 await asyncio.sleep(0.001)
-            # Not cancelled: the driver would ask for a stop of its own over a wire that is silent.
+            # A driver that is cancelled would ask for a stop of its own over the silent wire.
             with contextlib.suppress(CellError):
                 await job
             if ready.decided_s is not None:

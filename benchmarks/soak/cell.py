@@ -14,7 +14,7 @@ from tests.rigs.whole_cell.outside_plc import REJECTS, OutsidePlc
 from tests.rigs.whole_cell.own_cell import OwnCell, Program
 
 CYCLE_S = "900"
-"""For one part on a computer that others share."""
+"""Time for one part on a computer that others share."""
 RESET_S = 120.0
 _GUARD, _WORKER = "cellctl.guard.watch.main", "spawn_main"
 
@@ -28,7 +28,7 @@ class Cycle:
     """One part."""
 
     time_s: float
-    """Of its end, since the first began."""
+    """Time of its end, since the first began."""
     good: bool
     said: str
     """The line PLC's last words where it was not good."""
@@ -94,7 +94,7 @@ class SoakedCell:
         return good, said
 
     def _look(self) -> None:
-        # Only now: the daemon starts its vision workers with the first images.
+        # The workers are looked up here because the daemon starts them with the first images.
         if not self._pids:
             self._pids = processes(self.daemon, self.page)
         for name, pid in self._pids.items():
@@ -106,7 +106,7 @@ class SoakedCell:
 
 
 def _bring_to_idle(line: OutsidePlc) -> None:
-    """By the commands of the line; raises ``Died`` when the cell refuses them."""
+    """Bring the cell to Idle by the line's commands; ``Died`` when the cell refuses them."""
     for state, name in (("Aborted", "Clear"), ("Stopped", "Reset"), ("Completed", "Reset")):
         if line.state != state:
             continue

@@ -29,7 +29,7 @@ def draw(looked: Sequence[Looked], found: Sequence[Trend], path: Path) -> None:
             axes.plot(minutes[:begin], values[:begin], ".", color=MUTED, markersize=4)
             axes.plot(minutes[begin:], values[begin:], ".", color=ACCENT, markersize=4)
             trend = by_name[one.process, quantity]
-            # Through the middle of the points, as the line of Theil and Sen is.
+            # The line goes through the middle of the points, as that of Theil and Sen does.
             middle = np.median(minutes[begin:]), np.median(values[begin:])
             line = middle[1] + scale * trend.slope * (minutes[begin:] - middle[0]) / 60.0
             axes.plot(minutes[begin:], line, color=_COLOURS[trend.verdict])

@@ -42,7 +42,7 @@ class Looked:
 
     process: str
     time_s: Sequence[float]
-    """Since the start, one a cycle, rising."""
+    """Times since the start, one for each cycle, rising."""
     kept: Sequence[Kept]
 
 
@@ -56,7 +56,7 @@ class Trend:
     first: float
     """Median of the first third of what is judged."""
     last: float
-    """Of the last third."""
+    """Median of the last third."""
     slope: float
     low: float
     high: float
@@ -64,7 +64,7 @@ class Trend:
 
     @property
     def verdict(self) -> Verdict:
-        """By the whole interval, so that too few cycles are no proof."""
+        """Judge by the whole interval, so that too few cycles are no proof."""
         if self.high <= self.bound:
             return Verdict.FLAT
         return Verdict.GROWS if self.low > self.bound else Verdict.UNDECIDED
@@ -76,7 +76,7 @@ def judged_from(cycles: int) -> int:
 
 
 def trends(looked: Looked, bounds: Mapping[str, float] = BOUNDS) -> list[Trend]:
-    """Of each bounded quantity; raises ``ValueError`` for too few cycles."""
+    """Trend of each bounded quantity; raises ``ValueError`` for too few cycles."""
     begin = judged_from(len(looked.kept))
     hours = np.array(looked.time_s[begin:], dtype=float) / 3600.0
     if len(hours) < LEAST:

@@ -67,7 +67,7 @@ def run_seeds(
     ahead = _AHEAD * max(1, len(client.scheduler_info()["workers"]))
 
     def submitted(seed: int) -> Future:
-        # Not pure: a result is never taken from an earlier study of the same scheduler.
+        # A call that is not pure never takes a result of an earlier study of the same scheduler.
         return client.submit(run_seed, kind, seed, dict(scales), pure=False, key=_key(kind, seed))
 
     first = [submitted(seed) for seed in itertools.islice(waiting, ahead)]

@@ -173,4 +173,4 @@ KINDS: Mapping[str, StudyKind] = {
         ),
     )
 }
-"""By name."""
+"""Kinds of studies by their names."""

@@ -11,9 +11,9 @@ class StudyOutcome:
 
     seed: int
     good: bool
-    """By the truth, and called so."""
+    """True where the part truly is good, and was called so."""
     called_good: bool
-    """With ``good`` false the worst of all ends."""
+    """Whether the cell called it good; where ``good`` is false, the worst of all ends."""
     fault: str = ""
     figures: Mapping[str, float] = field(default_factory=dict)
     detail: Mapping[str, Any] = field(default_factory=dict)
@@ -25,5 +25,5 @@ class StudyOutcome:
 
     @classmethod
     def of(cls, row: Mapping[str, Any]) -> Self:
-        """From plain data; raises ``TypeError`` for a row of another form."""
+        """An outcome from plain data; raises ``TypeError`` for a row of another form."""
         return cls(**row)

@@ -34,7 +34,7 @@ class StudySource:
 
 
 def source_digest(root: Path = ROOT) -> str:
-    """Of the names and contents of all sources below a checkout."""
+    """Digest of the names and contents of all sources below a checkout."""
     found = hashlib.sha256()
     for path in sorted(_files(root)):
         found.update(f"{path.relative_to(root)}\0".encode())
@@ -43,7 +43,7 @@ def source_digest(root: Path = ROOT) -> str:
 
 
 def present_source(kind: str, scales: Mapping[str, float]) -> StudySource:
-    """Of this checkout."""
+    """The source of a study of this checkout."""
     return StudySource(kind, dict(scales), software(), source_digest())
 
 
@@ -73,7 +73,7 @@ class StudyResults:
 
     @property
     def outcomes(self) -> list[StudyOutcome]:
-        """Of all seeds so far, by seed."""
+        """Outcomes of all seeds so far, by seed."""
         return [self._outcomes[seed] for seed in sorted(self._outcomes)]
 
     def has(self, seed: int) -> bool:

@@ -62,7 +62,7 @@ def _run_all(left: Sequence[Case], ledger: Ledger, out: Path, console: Console) 
         try:
             outcome = _run(case, out)
         except NoResult as error:
-            # Not kept: nothing is known about the case, and the next call runs it again.
+            # This is not kept: nothing is known about the case, and the next call runs it again.
             console.print(f"{case.key}: no result: {error}", style="red")
             continue
         ledger.add(outcome)

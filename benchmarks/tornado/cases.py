@@ -23,7 +23,7 @@ class Case:
     """One run."""
 
     imperfection: str
-    """Of the catalogue, ``NONE`` or ``ALL``."""
+    """Name in the catalogue, ``NONE`` or ``ALL``."""
     scale: float
     place: Place
     seed: int
@@ -34,7 +34,7 @@ class Case:
         return f"{self.imperfection}-{self.scale:g}-{self.place}-{self.seed}"
 
     def scales(self) -> dict[str, float]:
-        """Of every imperfection of the scenario.
+        """Scale of every imperfection of the scenario.
 
         What the scenario file gives a size stays at that size in every case. All together leaves
         out what would need other calibrations.

@@ -11,7 +11,7 @@ from benchmarks.tornado.outcome import Verdict
 from cellctl.plot_style import ACCENT, GRID, LIMIT, MUTED, SECOND, style
 
 _SHADES = (1.0, 0.6, 0.3)
-"""Of the bars, from the smallest size to the largest."""
+"""Shades of the bars, from the smallest size to the largest."""
 
 
 @style()

@@ -24,7 +24,7 @@ class Cost:
     verdicts: tuple[Verdict, ...]
     texts: tuple[str, ...]
     more: dict[str, float | None]
-    """By figure: the largest value beyond that of the reference; None where no part was seated."""
+    """Largest value beyond the reference's, by figure; None where no part was seated."""
     iterations: int | None
     """The most of all seeds."""
 

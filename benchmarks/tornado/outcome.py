@@ -38,7 +38,7 @@ class Outcome:
 
     @property
     def seated(self) -> bool:
-        """Only then its offset says something about a part."""
+        """True for a part at its seat; its offset says something only then."""
         return self.seat_gap_mm is not None and abs(self.seat_gap_mm) < 1.0
 
     def row(self) -> dict[str, Any]:
@@ -47,6 +47,6 @@ class Outcome:
 
     @classmethod
     def of(cls, row: dict[str, Any]) -> Self:
-        """From ``row``; raises ``TypeError``, ``KeyError`` or ``ValueError`` for other data."""
+        """An outcome from ``row``; ``TypeError``, ``KeyError`` or ``ValueError`` for other data."""
         case, verdict = Case(**row["case"]), Verdict(row["verdict"])
         return cls(**{**row, "case": case, "verdict": verdict})

@@ -12,7 +12,7 @@ from benchmarks.tornado.cases import Case
 from benchmarks.tornado.outcome import Outcome, Verdict
 
 _END_S = 90.0
-"""For the demonstration to stop its robots and to close its run."""
+"""Time for the demonstration to stop its robots and to close its run."""
 
 
 class NoResult(RuntimeError):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 GROWTH_KB = 8_000
-"""Of resident memory that is not called a leak: the allocator keeps freed pieces of an image."""
+"""Growth of resident memory that is no leak: the allocator keeps freed pieces of an image."""
 
 GROWTH_THREADS = 1
 """That is not called one: a worker of a pool or a progress bar may be about to end."""
@@ -13,7 +13,7 @@ GROWTH_THREADS = 1
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """Of one process at one moment."""
+    """What one process keeps at one moment."""
 
     descriptors: int
     threads: int

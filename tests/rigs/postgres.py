@@ -98,12 +98,12 @@ class PostgresServer:
         return f"postgresql://{user}@127.0.0.1:{self.port}/{database}"
 
     def engine(self, user: str = OWNER, database: str = "postgres") -> Engine:
-        """For what a test looks at and spoils by itself."""
+        """An engine for what a test looks at and spoils by itself."""
         url = URL.create("postgresql+psycopg", user, PASSWORD, "127.0.0.1", self.port, database)
         return create_engine(url, isolation_level="AUTOCOMMIT", pool_size=1)
 
     def execute(self, *statements: str, database: str = "postgres") -> None:
-        """As the administrator."""
+        """Execute statements as the administrator."""
         engine = self.engine(database=database)
         with engine.connect() as connection:
             for statement in statements:

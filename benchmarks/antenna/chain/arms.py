@@ -48,7 +48,7 @@ IDEAL = _grade("ideal kinematics", 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Repeatability:
-    """Of one approach, standard deviations per axis."""
+    """How well an arm repeats one approach, as standard deviations per axis."""
 
     name: str
     position_m: float

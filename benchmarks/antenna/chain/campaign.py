@@ -43,13 +43,13 @@ QUICK_CELLS = 3
 IMAGE_CELLS = 3
 """A tenth and more of all plugs, with their teaching, are plugged with rendered images too."""
 REFERENCE_ROUNDS = 11
-"""In each cell, with each of four devices moved: 1012 checks in 23 cells."""
+"""Rounds in each cell, with each of four devices moved: 1012 checks in 23 cells."""
 RESULT = Path("runs") / "campaign-antenna-chain.json"
 HAND_EYE_WRONG = (0.3e-3, 0.05)
 _ONLY = ("difference",)
 
 Results = Mapping[str, Mapping[str, Drawn]]
-"""By the name of the row, then by scheme."""
+"""Results by the name of the row, then by scheme."""
 
 
 def main() -> int:

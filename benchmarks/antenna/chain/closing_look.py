@@ -13,7 +13,7 @@ TRANSFER_M = 1.0e-6
 """Plug to housing edges, and socket to panel marks: standard deviation of each, per axis."""
 LOOK_M = 1.5e-6
 STEP_M = 3.5e-6
-"""Of one small step of the robot, per axis."""
+"""Standard deviation of one small step of the robot, per axis."""
 TAUGHT_M = 2.5e-6
 """What stays of the constant part after teaching, once per cell."""
 YAW_LOOK_RAD = float(np.radians(0.005))

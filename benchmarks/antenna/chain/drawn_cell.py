@@ -15,7 +15,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.vision.camera.stereo_head import CameraModel
 
 LEVER_M = 0.2
-"""From the flange to the connector."""
+"""Distance from the flange to the connector."""
 BIAS_M = 5e-6
 CORNERS_PX = 0.1
 CONTACT_PX = 0.03
@@ -38,7 +38,7 @@ PLUG_STATION = _pose(0.48, -0.275, 0.32)
 SOCKET = _pose(0.48, 0.275, 0.22)
 """base_T_socket by the drawing of the panel."""
 FLANGE_T_PLUG = _pose(0.0, 0.0, LEVER_M, DOWN)
-"""By the drawing: the plug's z axis points up, as the socket's does."""
+"""Pose in the drawing: the plug's z axis points up, as the socket's does."""
 FLANGE_T_CAM1 = _pose(0.08, 0.0, LEVER_M - WORKING_DISTANCE_M)
 """Looks along the flange axis; at working distance when the flange is at plugging height."""
 BASE_T_CAM2 = PLUG_STATION * _pose(0.0, 0.0, -WORKING_DISTANCE_M)

@@ -55,7 +55,7 @@ class ImageOptics:
     drawn: DrawnOptics
     kind: ContactKind
     chance: np.random.Generator
-    """Of noise and light of the images: the cell's own chance must not depend on them."""
+    """Chance for noise and light of the images: the cell's own must not depend on them."""
 
     def look(self, sight: Sight, rng: np.random.Generator) -> UncertainPose:
         """As ``DrawnOptics.look``; raises the faults of the measurement.
@@ -172,7 +172,7 @@ def _plane(
 
 
 def _flip(kind: ContactKind) -> RigidTransform:
-    """From the campaign's frame, z up, to that of the drawing, z out of the mating face."""
+    """The turn from the campaign's frame, z up, to the drawing's, z out of the mating face."""
     return RigidTransform.identity() if kind == "holes" else SOCKET_T_MATED_PLUG
 
 

@@ -41,7 +41,7 @@ class Sight:
 
     camera_T_object: RigidTransform
     points_m: Array
-    """Of the object, shape (n, 3) with z = 0."""
+    """Points of the object, shape (n, 3) with z = 0."""
     believed_plane: RigidTransform
     """camera_T_plane: the object is believed to lie in its x-y plane."""
     noise_px: float

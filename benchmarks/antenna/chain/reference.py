@@ -38,7 +38,7 @@ from cellctl.processes.antenna_module.faults.calibration import (
 )
 
 LOOKS, TAUGHT_LOOKS = 4, 16
-"""As a cell file that does not say otherwise."""
+"""Numbers of looks that hold where a cell file says nothing else."""
 MOVED_M = 20e-6
 DRIFT_M = 24e-6
 """What the cell file states of an arm that warms up by 3 K: it is not found by the check."""
@@ -51,11 +51,11 @@ class ReferenceCounts:
 
     checks: int
     named: int
-    """With the right device moved by 20 µm."""
+    """Checks that named the right device, which was moved by 20 µm."""
     found: int
-    """With any device named."""
+    """Checks that named some device."""
     false: int
-    """Of as many checks in which nothing was moved."""
+    """Checks that named a device though nothing was moved, of as many checks."""
     looks: int
     """That all checks took together."""
 

@@ -37,7 +37,7 @@ class Row:
 
     @property
     def name(self) -> str:
-        """For the table."""
+        """Name of the row in the table."""
         parts = [self.grade.name, self.repeatability.name, f"{self.conditions.kelvin:g} K"]
         if self.conditions.slot_m:
             parts.append(f"slot {self.conditions.slot_m * 1e3:.0f} mm away")
@@ -66,7 +66,7 @@ class Drawn:
 
     @property
     def rms_m(self) -> float:
-        """Per axis."""
+        """Root mean square per axis."""
         return float(np.sqrt((self.errors[:, :2] ** 2).mean()))
 
     @property

@@ -62,7 +62,7 @@ class Conditions:
     socket_looks: int = 1
     kelvin: float = 0.0
     slot_m: float = 0.0
-    """From the taught slot to the one that is plugged."""
+    """Distance from the taught slot to the one that is plugged."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,12 +76,12 @@ class Situation:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CellResult:
-    """By scheme."""
+    """What came out in one cell, by scheme."""
 
     errors: Mapping[str, Array]
     """Shape (n, 3), see ``Bench.plug_error``."""
     predicted_p99_m: Mapping[str, float]
-    """Of one plug, from the propagated covariance."""
+    """Error of one plug, from the propagated covariance."""
 
 
 def believed_cell(cell: DrawnCell, grade: Grade, kelvin: float) -> PlugCell:

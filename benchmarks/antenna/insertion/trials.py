@@ -31,8 +31,8 @@ SEATED_N = 15.0
 NOISE_N, NOISE_N_M = 0.05, 0.002
 MEAN_OF = 3
 TRUE_POSITION_M = 5e-6
-"""Of pins and of holes, per axis: with a play of 0.03 mm, contacts that scatter by twice as much
-touch the walls even in a plug that is placed without any error."""
+"""Scatter of pins and of holes, per axis: with a play of 0.03 mm, contacts that scatter by twice as
+much touch the walls even in a plug that is placed without any error."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +47,7 @@ class Kind:
 
     @classmethod
     def of(cls, made: ConnectorDrawing) -> "Kind":
-        """Of one kind, with its shipped drawing."""
+        """One kind of connector, with its shipped drawing."""
         drawn = read_connector(Path("config/connectors") / f"{made.name}-holes.toml")
         holes_m = np.array(list(made.positions_m("holes").values()))
         return cls(made, drawn, holes_m, InsertionLimits.of(drawn))
@@ -62,9 +62,9 @@ class Fault:
 
     name: str = "good"
     bend: float = 0.0
-    """Of one pin, in any direction, relative to the capture radius of the connector."""
+    """Bend of one pin, in any direction, relative to the capture radius of the connector."""
     offset: float = 0.0
-    """Of the plug, in any direction, relative to the same."""
+    """Offset of the plug, in any direction, relative to the same."""
     yaw_deg: float = 0.0
     seat_early_m: float = 0.0
     missing: bool = False
@@ -99,7 +99,7 @@ class InsertionOutcome:
     total_n: float
     collapsed: bool
     travel_m: float
-    """From the first early contact to where the plug stood still; 0 without a trip in time."""
+    """Way from the first early contact to where the plug stood; 0 without a trip in time."""
 
 
 def run_insertion(
@@ -147,7 +147,7 @@ def run_insertion(
 
 
 def _rest_of_step_s(driven_m: float, speed_m_s: float, step_m: float) -> float:
-    """Until the step under way is finished, whatever is asked for meanwhile."""
+    """Time until the step under way is finished, whatever is asked for meanwhile."""
     done_m = driven_m - START_M
     return float((np.ceil(done_m / step_m) * step_m - done_m) / speed_m_s)
 

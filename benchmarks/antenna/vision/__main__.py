@@ -26,7 +26,7 @@ def main() -> int:
     parser.add_argument("-n", type=int, default=80, help="images of most rows")
     parser.add_argument("--only", nargs="*", default=[], help="rows, as B1 B6")
     chosen = parser.parse_args()
-    # Not forked: OpenCV's threads do not survive it.
+    # The processes are not forked, because OpenCV's threads do not survive a fork.
     with ProcessPoolExecutor(2, get_context("spawn")) as pool:
         bench = Bench(pool, chosen.n)
         for number, rows in _rows(bench).items():

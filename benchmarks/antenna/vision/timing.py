@@ -12,7 +12,7 @@ from cellctl.processes.antenna_module.vision.measure import measure_connector, m
 from tests.rigs.antenna.pictures import CLEAN, Trial, trial
 
 MARK_IMAGES, PLUG_IMAGES, SOCKET_IMAGES = 9, 3, 9
-"""Of one run, three frames a look: module on the tray twice and after the release, plug with
+"""Images of one run, three frames a look: module on the tray twice and after the release, plug with
 gripper marks once, socket three times. Whatever else is computed takes milliseconds."""
 REPEATS = 5
 

@@ -47,7 +47,7 @@ class Conditions:
     missing: int = 0
     """Contacts that are missing, at random."""
     bent_m: float = 0.0
-    """By which one contact is bent, in any direction."""
+    """How far one contact is bent, in any direction."""
     blocked: int = 0
     """Holes with something in them, at random."""
     dirt: int = 0

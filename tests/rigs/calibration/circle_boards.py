@@ -43,7 +43,7 @@ class SeenGrid:
 
     images: BoardImages
     camera_T_board: RigidTransform
-    """In the left camera, of the board's own frame."""
+    """Pose of the board's own frame in the left camera."""
     left_px: Array
     """Where the centres of the circles are seen, shape (n, 2)."""
 

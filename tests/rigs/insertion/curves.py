@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 NAMES = (
     "time_s", "x_mm", "y_mm", "depth_mm", "fx_n", "fy_n", "fz_n", "mx_nm", "my_nm", "mz_nm",
 )  # fmt: skip
-"""As in the record of a run."""
+"""Columns as the record of a run has them."""
 TASK = """
 [fit]
 peg_radius_mm = 3.0
@@ -42,7 +42,7 @@ class Inserted:
     """Where the peg meets something; None for the seat."""
     seat_n: float = 15.0
     play_mm: float = 0.1
-    """Between the walls, across."""
+    """Play between the walls, across."""
     walls: tuple[str, ...] = ("+x", "-x", "+y", "-y")
     """Sides at which there is one."""
     pushed: tuple[str, ...] = ("+x", "-x", "+y", "-y")

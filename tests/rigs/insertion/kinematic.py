@@ -29,7 +29,7 @@ _TURN_SIGMA_M = 0.02e-3
 _READING_S = 0.1
 """Readings of a height that are so far apart are independent."""
 _EVERY = 20
-"""Of the ticks over a flat face so many are skipped: nothing changes there."""
+"""Over a flat face one tick in so many is looked at, because nothing changes there."""
 
 
 class KinematicMotions(ContactMotions):
@@ -51,7 +51,7 @@ class KinematicMotions(ContactMotions):
 
     @property
     def true_offset_m(self) -> Array:
-        """Of the tip from the axis of the hole, shape (2,)."""
+        """Offset of the tip from the axis of the hole, shape (2,)."""
         return self.position_m[:2] + self._offset_m + self._wander_m - self.truth.hole_m
 
     async def move_free(
@@ -115,7 +115,7 @@ class KinematicMotions(ContactMotions):
     ) -> ContactMotion:
         ticks = self._along(way_m, speed_m_s)
         if self._between_walls:
-            # Between walls the peg stays in its hole, whatever of the way the arm has yielded by.
+            # Between walls the peg stays in its hole, however far the arm has yielded.
             self.time_s += len(ticks) * TICK_S
             self.position_m[:2] = ticks[-1]
             return self._ended(Ended.TRAVEL, press_n)

@@ -20,7 +20,7 @@ class Truth:
     hole_m: Array
     """Axis of the hole in frame A, shape (2,)."""
     slope: Array
-    """Of the face against frame A, shape (2,)."""
+    """Slope of the face against frame A, shape (2,)."""
     absent: bool = False
     """There is no hole at all."""
 
@@ -44,7 +44,7 @@ class Surface:
     truth: Truth
 
     def depths_m(self, offsets: Array, ticks: Array, rotation_rad: Array) -> Array:
-        """Of the tip where it rests at each tick, shape (n,); ``offsets`` (n, 2) from the hole."""
+        """Depths of the tip at rest at each tick, shape (n,); ``offsets`` (n, 2) from the hole."""
         fit = self.fit
         face = ticks @ self.truth.slope
         tilt_rad = float(np.linalg.norm(rotation_rad))

@@ -110,7 +110,7 @@ class TrapOutcome:
     state: PegState
     judgement: PegJudgement
     captured: bool
-    """By the pushes alone."""
+    """Whether the pushes alone call the peg captured."""
 
 
 def run_trap(task: SearchTask, state: PegState, seed: int) -> TrapOutcome:

@@ -163,7 +163,7 @@ def _measured(world: DeckOnFrame, rng: np.random.Generator) -> UncertainPose:
 
 
 def _calibrated_deck(world: DeckOnFrame, rng: np.random.Generator) -> RigidTransform:
-    """As the deck-flange calibration gives it: what encoders and truth say together."""
+    """The deck on the flange as its calibration gives it: from encoders and truth together."""
     deck = world.cell_T_deck()
     assert deck is not None
     encoder = world.arms["main"].encoder_pose(world.time_s)

@@ -20,7 +20,7 @@ POLL_S = 0.005
 SLOTS = 600_000
 """Ten minutes of samples."""
 STOP_CONFIRM_S = 0.1
-"""As ``GuardSettings``: a stop that is not latched by then withholds the heartbeat."""
+"""The same as in ``GuardSettings``: a stop that is not latched by then withholds the heartbeat."""
 
 
 class WorldGuard:

@@ -57,7 +57,7 @@ class Trial:
     final_true_n: float = float("nan")
     final_sensed_n: float = float("nan")
     true_gap_mm: float = float("nan")
-    """Of the middle of the deck above its seat while holding, less what the contact gives way."""
+    """Gap of the deck's middle over its seat while holding, less what the contact gives way."""
     speed_mm_s: float = 0.0
     slow_s: float = 0.0
     duration_s: float = 0.0
@@ -67,7 +67,7 @@ class Trial:
     peak_lateral_n: float = 0.0
     final_lateral_n: float = float("nan")
     gave_way_mm: float = 0.0
-    """Across the approach, because of pins."""
+    """How far the deck gave way across the approach, because of pins."""
     standing: bool = False
     """The arm stands still at the end."""
 
@@ -172,7 +172,7 @@ def run_trial(
 
 
 def nominal_settings(stop_latency_s: float) -> MatingSettings:
-    """As commissioning would leave them: measured latency, stiffness only bounded from above."""
+    """Settings after commissioning: measured latency, stiffness only bounded from above."""
     return MatingSettings(
         stop_latency_s=1.05 * stop_latency_s + 0.01,
         stiffness_n_m=1.0 / (1.0 / ARM_STIFFNESS_N_M + 1.0 / STIFFEST_CONTACT_N_M),

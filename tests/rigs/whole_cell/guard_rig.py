@@ -32,7 +32,7 @@ class Robot:
     peer: Peer
     latched: bool = False
     deaf: int = 0
-    """So many stop requests are ignored."""
+    """Number of stop requests that are ignored."""
     mute: bool = False
     beats_s: list[float] = field(default_factory=list)
     stops_s: list[float] = field(default_factory=list)
@@ -64,7 +64,7 @@ class Robot:
         self.lost.set()
 
     async def stopped(self, count: int = 1) -> None:
-        """Until so many stop requests have come, at most two seconds."""
+        """Wait until so many stop requests have come, at most two seconds."""
         await until(lambda: len(self.stops_s) >= count)
 
 
@@ -80,7 +80,7 @@ class Rig:
 
 
 async def until(condition: Any, timeout_s: float = 2.0) -> None:
-    """Until a condition holds; ``TimeoutError`` if it does not."""
+    """Wait until a condition holds; ``TimeoutError`` if it does not."""
     async with asyncio.timeout(timeout_s):
         while not condition():  # noqa: ASYNC110 - what is waited for lies in other processes
             await asyncio.sleep(0.002)

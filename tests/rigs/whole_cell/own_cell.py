@@ -65,7 +65,8 @@ class OwnCell:
             copytree(CONFIG / shipped, self.calibration, dirs_exist_ok=True)
         text = text.replace(f'"{shipped}"', f'"{self.calibration}"')
         text = text.replace('"features/', f'"{CONFIG}/features/')
-        # Beside the cell file, as shipped: a taught correction knows its drawings by these names.
+        # They stand beside the cell file, as shipped: a taught correction knows its drawings by
+        # these names.
         copytree(CONFIG / "connectors", self.folder / "connectors", dirs_exist_ok=True)
         self.cell.write_text(self._renumbered(text), encoding="utf-8")
 

@@ -40,7 +40,7 @@ async def until_moving(rig: AnyRig) -> None:
 
 
 async def stands(rig: AnyRig) -> None:
-    """Until the arm stands: a controller may still brake when its answer has come."""
+    """Wait until the arm stands: a controller may still brake when its answer has come."""
     async with asyncio.timeout(2.0):
         while rig.controller.moving():  # noqa: ASYNC110  the arm has no event
             await asyncio.sleep(0.01)
@@ -52,7 +52,7 @@ async def within(limit_s: float, task: Awaitable[Value]) -> Value:
 
 
 async def rearm(rig: AnyRig) -> None:
-    """As an operator does: try until the robot's channels are back and it accepts."""
+    """Reset as an operator does: try until the robot's channels are back and it accepts."""
     async with asyncio.timeout(5.0):
         while True:
             try:

@@ -53,7 +53,7 @@ class ChaosProxy:
     def __init__(self, target_port: int, port: int = 0) -> None:
         self.port = port
         self.forth = Chaos()
-        """From the end that connects."""
+        """Chaos for what comes from the end that connects."""
         self.back = Chaos()
         self._target_port = target_port
         self._server: asyncio.Server | None = None

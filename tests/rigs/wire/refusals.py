@@ -23,7 +23,7 @@ class Refusal:
     send: Callable[[AnyRig], Callable[[int, int], bytes]]
     """Prepares the rig; the record of a session and a number."""
     words: str = ""
-    """In the fault's detail; the reason of the refusal without it."""
+    """Words in the fault's detail; the reason of the refusal where there are none."""
 
 
 def _move(
@@ -78,4 +78,5 @@ REFUSALS: dict[str, Refusal] = {
     "ERROR": Refusal(ControllerFault, _panel("vendor_error")),
     "LATCHED": Refusal(NotRearmed, _move),
 }
-"""By the reason, which is a label of the main job too. Before ``LATCHED`` the arm was stopped."""
+"""Refusals by their reason, also a label of the main job. Before ``LATCHED`` the arm was
+stopped."""

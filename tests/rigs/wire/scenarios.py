@@ -4,7 +4,8 @@ from fakes.scenario_file.scenario import Scenario
 
 
 def as_on_a_real_cell(scenario: Scenario) -> Scenario:
-    """With the dead man of a real cell; the demonstration's is wider, it shares its processors."""
+    """The scenario with the dead man of a real cell: that of the demonstration, which shares its
+    processors, waits longer."""
     robots = {
         name: robot.model_copy(update={"deadman_ms": 300})
         for name, robot in scenario.robots.items()

@@ -9,7 +9,7 @@ EULERS = ("ZYX", "XYZ", "ROTVEC")
 
 
 def rotation_by_hand(euler: str, abc_deg: Sequence[float]) -> Rotation:
-    """Of a, b and c in degrees, which stand for z, y and x."""
+    """Rotation from a, b and c in degrees, which stand for z, y and x."""
     a, b, c = abc_deg
     if euler == "ROTVEC":
         return Rotation.from_rotvec(np.radians([c, b, a]))

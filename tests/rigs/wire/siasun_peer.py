@@ -84,7 +84,7 @@ class Peer:
         return body
 
     async def closed(self) -> None:
-        """Until the driver has closed this channel."""
+        """Wait until the driver has closed this channel."""
         async with asyncio.timeout(2):
             try:
                 while await self.reader.read(4096):

@@ -19,7 +19,7 @@ OFFER = StreamOffer()
 
 
 def arm_settings(command_port: int, state_port: int, **changes: object) -> SiasunConfig:
-    """Of the driver of this arm, with changes."""
+    """Settings of the driver of this arm, with changes."""
     return SiasunConfig.model_validate(
         {
             "robot_name": "SR500A",
