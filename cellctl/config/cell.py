@@ -74,7 +74,7 @@ class LocalApi(Section):
     """Relative to the working directory of the daemon; empty: `cellctl.sock` in the runtime
     directory of the service, else in data_dir."""
     group: str = ""
-    """Whose members may command the cell; empty for the group of the daemon."""
+    """Group whose members may command the cell; empty for the group of the daemon."""
     page_user: str = "cellctl-hmi"
     """The user of the operator page's process; it may say which person asks. The daemon's own user
     may, too."""
@@ -87,7 +87,7 @@ class FleetConfig(Section):
     """``postgresql://USER@HOST:PORT/DATABASE``, with options of libpq behind a question mark. It
     has no password: cell files are copied, sent and kept in records."""
     password_file: str = ""
-    """Absolute; its first line is the password. Empty: the environment has it."""
+    """Absolute path; the first line there is the password. Empty: the environment has it."""
 
     @field_validator("url")
     @classmethod
@@ -102,7 +102,7 @@ def checked_url(url: str) -> str:
         password, user, host = parts.password, parts.username, parts.hostname
         _ = parts.port
     except ValueError:
-        # Without the reason, which may quote what stands before the @.
+        # The reason is left out, because it may quote the password that stands before the @.
         raise ValueError("it reads postgresql://USER@HOST:PORT/DATABASE") from None
     if password is not None or _SECRETS & {key for key, _ in parse_qsl(parts.query)}:
         raise ValueError("a password does not belong here; give password_file or the environment")
@@ -118,11 +118,11 @@ class CellConfig(Section):
     data_dir: str = "runs"
     """Run store and artefacts, relative to the working directory of the daemon."""
     calibration_dir: str = "calibration"
-    """Relative to the cell file."""
+    """Folder of the calibrations, relative to the cell file."""
     plc: Plc = Plc()
     local_api: LocalApi = LocalApi()
     fleet: FleetConfig | None = None
-    """The daemon does not look at it."""
+    """Database of the fleet; the daemon does not look at it."""
     robots: dict[DeviceName, RobotConfig] = Field(default_factory=dict)
     stereo_cameras: dict[DeviceName, StereoCameraConfig] = Field(default_factory=dict)
     cameras: dict[DeviceName, CameraConfig] = Field(default_factory=dict)
@@ -136,7 +136,7 @@ class CellConfig(Section):
     """Settings of the processes by name, those for all of their recipes; each process checks its
     own."""
     recipes: tuple[SerializeAsAny[Recipe], ...] = ()
-    """Each is the recipe model of its own process."""
+    """Recipes, each as the recipe model of its own process."""
 
     def section(self, name: str) -> Mapping[str, DeviceConfig]:
         """The devices of one section, by name."""

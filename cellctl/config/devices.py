@@ -27,7 +27,7 @@ class DeviceConfig(Section):
     driver: str
     simulated: bool = False
     settings: dict[str, Any] = Field(default_factory=dict)
-    """Checked by the driver's own ``Config``."""
+    """Settings, which the driver's own ``Config`` checks."""
 
 
 class PermitConfig(Section):
@@ -47,7 +47,7 @@ class LightConfig(Section):
     output: str
     """Name of the output there; on is light."""
     settle_s: Annotated[float, Field(ge=0, le=10)] = 0.0
-    """From the confirmed output to the exposure: what the lamp takes to give its full light."""
+    """Time from the confirmed output to the exposure, in which the lamp reaches its full light."""
 
 
 class AutoExposureConfig(Section):
@@ -56,7 +56,7 @@ class AutoExposureConfig(Section):
     hole_px: tuple[Pixels, Pixels]
     """Least and greatest radius of the holes in the image."""
     target_grey: Annotated[float, Field(ge=20, le=240)] = 180.0
-    """Of the surface round them, of 255."""
+    """Grey that the surface round the holes shall have, of 255."""
     exposure_ms: tuple[Milliseconds, Milliseconds] = (0.02, 200.0)
     """Least and greatest exposure."""
     tries: Annotated[int, Field(ge=1, le=100)] = 16
@@ -85,9 +85,9 @@ class MaintenanceSpeeds(Section):
     """What no move of a robot exceeds while the unit is in Maintenance."""
 
     speed_percent: Annotated[int, Field(ge=1, le=100)]
-    """Of moves between taught poses, as a share of rated joint speed."""
+    """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=10, le=500)]
-    """Of straight moves. At least 10: a procedure that measures how an arm stops makes it move at
+    """Speed of straight moves. At least 10: a procedure that measures how an arm stops moves it at
     up to 8 mm/s, and would take a slower move for a quicker stop."""
 
 
@@ -100,7 +100,7 @@ class LoadConfig(Section):
     com_mm: tuple[ComMm, ComMm, ComMm]
     """Its centre of mass in the flange."""
     tolerance_kg: Annotated[float, Field(gt=0, le=200)]
-    """By which what the controller reckons with, or what was weighed, may differ."""
+    """Largest difference of the controller's mass, or of the weighed one, from ``mass_kg``."""
     tolerance_mm: Annotated[float, Field(gt=0, le=500)]
     """The same for each coordinate of the centre of mass."""
     not_weighed_kg: Annotated[float, Field(ge=0, le=200)] = 0.0
@@ -120,11 +120,11 @@ class RobotConfig(DeviceConfig):
     poses_deg: dict[DeviceName, JointsDeg] = Field(default_factory=dict)
     """Taught joint positions by name, such as ``home``; a process says which ones it needs."""
     ways: tuple[WayConfig, ...] = ()
-    """Of joint moves between taught poses; where none is stated, such a move goes straight."""
+    """Ways between taught poses by joints; where none is stated, such a move goes straight."""
     permit: PermitConfig | None = None
-    """Opened with every stop, closed when the robot is re-armed."""
+    """Contact that opens with every stop and closes when the robot is re-armed."""
     load: LoadConfig | None = None
-    """Compared with what the controller reckons with, where it tells, and with what is weighed."""
+    """Load that the weighed one, and that of a controller that tells it, are compared with."""
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
     """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0
@@ -146,10 +146,10 @@ class CameraConfig(DeviceConfig):
     flange_T_camera: WrittenPose | None = None
     """Nominal pose on the flange of the robot that carries it, for planning views only."""
     light: LightConfig | None = None
-    """Switched on for each exposure; cameras may share one."""
+    """Lamp that is switched on for each exposure; cameras may share one."""
     auto_exposure: AutoExposureConfig | None = None
-    """Found before the first measurement of a run, and kept for all of it; none: that of the
-    settings, or of the camera."""
+    """How the exposure of a run is found, before its first measurement; without this it is that of
+    the settings, or of the camera."""
 
 
 class StereoCameraConfig(CameraConfig):
@@ -178,9 +178,9 @@ class ForceSensorConfig(DeviceConfig):
     stop_channel: DeviceConfig
     """The guard's own line to that robot."""
     stale_ms: Annotated[float, Field(ge=2, le=500)] = 10.0
-    """While armed: no sample for this long is a trip."""
+    """Time without a sample that is a trip while the guard is armed."""
     flange_age_ms: Annotated[float, Field(ge=20, le=1000)] = 100.0
-    """While armed: a flange pose older than this is a trip."""
+    """Age of the flange pose that is a trip while the guard is armed."""
     free_force_n: Annotated[float, Field(gt=0, le=20_000)] = 2000.0
     """Greatest force at the sensor in moves that should touch nothing: what the load makes of their
     acceleration and, before it was identified, of their tilt. The default fits 200 kg at 40 % of

@@ -12,7 +12,7 @@ class WrittenValue:
     key: str
     value: str
     line: int | None = None
-    """Where the key stands; None for another file."""
+    """Line in which the key stands; None for another file."""
 
     def __str__(self) -> str:
         place = "" if self.line is None else f"line {self.line}: "
@@ -28,7 +28,7 @@ class ConfigIssue:
     allowed: str
     number: int = ConfigInvalid.number
     line: int | None = None
-    """Where the key stands, or the table that lacks it; None for another file."""
+    """Line of the key, or of the table that lacks it; None for another file."""
     against: tuple[WrittenValue, ...] = ()
     """What this value contradicts, where nothing decides which of them is wrong."""
 

@@ -100,10 +100,10 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
     bad = bad_devices(found)
     for index, recipe in enumerate(cell.recipes):
         found += _process_issues(cell, recipe, f"recipes.{index}", folder, bad)
-    # Of all that is only implausible these alone keep a daemon from its cell: a time that is too
+    # Only these of all implausible values keep a daemon from its cell: a time that is too
     # long protects nothing, and nothing in the work of a year shows it.
     found += unless_named(found, list(protective_time_issues(cell, bad)))
-    # Last: a device at a wrong address still belongs where the process wants it or not.
+    # This comes last: a device at a wrong address still belongs where the process wants it, or not.
     return [*found, *address_issues(cell)], cell
 
 
@@ -272,6 +272,6 @@ def _process_issues(
     missing = list(lacking(cell, definition.roles, recipe, key))
     yield from missing
     taken = {f"{role.section}.{recipe.device(name)}" for name, role in definition.roles.items()}
-    # Without its settings, and all of its devices in order, a process has nothing to judge by.
+    # A process can judge nothing without its settings and with any of its devices wrong.
     if not missing and not taken & bad_devices and recipe.process in cell.processes:
         yield from definition.check(cell, recipe, key, folder)

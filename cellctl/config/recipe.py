@@ -29,7 +29,7 @@ class Recipe(Section):
     id: Annotated[int, Field(ge=1, le=99)]
     name: Annotated[str, Field(min_length=1, max_length=64)]
     roles: dict[DeviceName, DeviceName] = Field(default_factory=dict)
-    """Which device takes a role of the process, where it is not the device of the role's name."""
+    """Device for each role of the process that the device of the role's own name does not take."""
     line_lost_in_contact: LineLostAction = LineLostAction.KEEP
     """Steps without contact hold at the next safe point, whatever stands here."""
 

@@ -39,8 +39,9 @@ class ZoneConfig(Section):
 
     robots: Annotated[dict[DeviceName, ZoneShare], Field(min_length=2)]
     retreat: tuple[DeviceName, ...] = ()
-    """In this order they leave when more than one of them is in the zone: each by moves all the
-    time towards its ``way_out``, while the others stand. Who is not named waits until alone."""
+    """Robots in the order in which they leave when more than one of them is in the zone: each by
+    moves that always go towards its ``way_out``, while the others stand. A robot that is not named
+    waits until it is alone."""
     wait_s: Annotated[float, Field(ge=0.0, le=600.0)] = 30.0
     """How long a robot waits for another one that is on its way out."""
 

@@ -1,4 +1,4 @@
-"""In which line of a TOML file a key stands.
+"""Finds the line of a TOML file in which a key stands.
 
 ``tomllib`` keeps no lines, so tables and keys are looked for in the text. The text is known to be
 TOML; what is not understood here only leaves a finding without its line.

@@ -77,8 +77,8 @@ def _section(lines: list[str], name: str) -> tuple[int, int] | None:
 
 
 def _last_written(lines: list[str], first: int, last: int) -> int:
-    """Behind the last line of a table that is no blank and no comment, which may belong to what
-    follows."""
+    """The line behind the last one of a table that is neither blank nor a comment, since a comment
+    there may belong to what follows."""
     while last > first and not lines[last - 1].partition("#")[0].strip():
         last -= 1
     return last

@@ -31,7 +31,7 @@ def toml_hint(text: str, error: str) -> str:
 
 
 def _above(lines: list[str], number: int) -> str:
-    """Where the key or table of a line stands for the first time."""
+    """Says in which line the key or table of a line stands for the first time."""
     name = lines[number - 1].split("=")[0].split("#")[0].strip()
     for earlier in range(number - 1, 0, -1):
         if lines[earlier - 1].split("=")[0].split("#")[0].strip() == name:

@@ -20,7 +20,7 @@ class MoveKind(Enum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class StatedPlace:
-    """Where an arm stands."""
+    """Place at which an arm stands."""
 
     label: str
     """Name in words; a taught pose has its own."""

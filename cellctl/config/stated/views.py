@@ -24,7 +24,7 @@ class StatedHead:
     pose: str
     """The taught pose from which it measures, and which is to be planned."""
     camera: StereoHead
-    """As calibrated."""
+    """The head as it was calibrated."""
     flange_T_camera: RigidTransform
 
 
@@ -42,7 +42,7 @@ class StatedPart:
     further: tuple[Hole, ...]
     """Holes of the drawing that no head measures so far."""
     others: Mapping[str, StatedPlace]
-    """Where the arms stand that carry no head."""
+    """Places of the arms that carry no head."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

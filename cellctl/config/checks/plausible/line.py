@@ -28,7 +28,7 @@ def line_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
 
 
 def _own_addresses(cell: CellConfig) -> set[str]:
-    """Where this PC listens, but for addresses that every PC has."""
+    """Addresses at which this PC listens, but for those that every PC has."""
     listened = {
         str(device.settings.get("listen_host", "")) for _, device in cell.devices().values()
     }
