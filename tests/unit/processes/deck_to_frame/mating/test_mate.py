@@ -79,8 +79,8 @@ def test_a_good_deck_is_seated_below_the_limit(seated: Seated) -> None:
     assert result.outcome is MatingOutcome.SEATED
     assert payload.peak_contact_force_n < 45.0
     assert 35.0 <= result.verdict.force_n <= 45.0
-    # The gap is what travel and force say with the stiffness of this very contact. A deck that bends
-    # meets the frame corner by corner, and a soft cell shows more of it.
+    # The gap is what travel and force say with the stiffness of this very contact. A deck that
+    # bends meets the frame corner by corner, and a soft cell shows more of it.
     assert abs(result.verdict.gap_m) < 0.7 * SEAT_DEPTH_M
     assert result.released is not None
     assert 10.0 <= payload.contact_force_n <= 20.0, "relaxed for fastening"
