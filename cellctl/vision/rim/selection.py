@@ -39,13 +39,15 @@ _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 
 _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """Depths at which a fit may start: it converges from above the true one, not always from below."""
+_LEAST_WALL_PX = 0.1
+"""Width below which a fitted wall is none: its light then only imitates a shift of the rim."""
 _HINT_GAIN = 4.0
 """Fall of chi square from which on a fit with a wall is worth its time."""
 
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _BLUR_SIGMA: Array = np.array([0.25, *UNKNOWN_SIGMA])
-_KNOWN_BLUR_SIGMA: Array = np.array([0.03, 0.05, 0.05, 0.1])
+_KNOWN_BLUR_SIGMA: Array = np.array([0.03, 0.01, 0.01, 0.02])
 _LIKELY_BLUR_SIGMA: Array = np.array([0.1, 0.1, 0.1, 0.3])
 """Prior of ``Blur.vector`` about the first guess, and about what other rims of the image show: for
 two edges, and wider for one, which shows its blur itself."""
@@ -148,7 +150,10 @@ def fit_single_image(given: RimFitInput, known: Blur | None) -> SelectedFit:
         return by_arcs
     shape = replace(plain.shapes[0], wall_ratio=ratio)
     with_wall = single_image_problem(given.pixels, shape, light, prior, across_lay)
-    return _likelier(by_arcs, _by_arcs(full_fit(with_wall, shape.vector)))
+    walled = _by_arcs(full_fit(with_wall, shape.vector))
+    foot_px = float(np.linalg.norm(given.centre)) / given.patch.unit_px
+    seen_px = (walled.fit.shapes[0].wall_ratio or 0.0) * foot_px
+    return by_arcs if seen_px < _LEAST_WALL_PX else _likelier(by_arcs, walled)
 
 
 def _by_arcs(fit: RimFit) -> SelectedFit:
