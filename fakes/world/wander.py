@@ -5,6 +5,8 @@ import numpy as np
 from fakes.world.frames import Array
 
 _WAVES = 24
+"""Enough for a normal distribution: over 3000 arms the fourth moment is 2.93 and not 3, and the
+correlation keeps within 0.02 of the exponential."""
 _SHORTEST_M = 2e-3
 
 

@@ -5,6 +5,7 @@ import struct
 from fakes.wire.duco.logic import DucoLogic
 
 SIZE = 1468
+"""Bytes of a frame, which has neither header nor length."""
 PERIOD_S = 0.1
 
 

@@ -21,6 +21,7 @@ Client = int
 """A connection, as long as it stands."""
 REMOTE, ENABLED, SAFETY_RUN, SAFETY_STOP_0 = 2, 6, 5, 9
 MOST_LOAD_KG = 35.0
+"""Greatest load of the family (manual), beyond which the controller refuses a call."""
 
 
 class DucoLogic:

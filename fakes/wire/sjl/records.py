@@ -7,7 +7,7 @@ import numpy as np
 from fakes.world.frames import Array, matrix_to_written
 
 RECORD_MAX = 255
-"""Bytes, with the LF."""
+"""Bytes of a record at the most, with the LF (docs/protocols/sjl-1.md, section 2)."""
 
 
 class RecordError(ValueError):

@@ -15,8 +15,9 @@ COMMAND_ID = 0x80
 REPLY_IDS = (0x291, 0x292, 0x293)
 STOP, SINGLE, START = 0, 1, 2
 _BUS_LIMIT_HZ = 2500.0
-"""What three messages a sample leave possible at 1 Mbit/s."""
+"""What 1 Mbit/s lets through: a sample is three messages, of up to 135 bits each with stuffing."""
 _CATCH_UP_S = 1.0
+"""A box whose messages nobody could take for longer than this has dropped them."""
 
 
 class CanFrame(NamedTuple):

@@ -7,6 +7,8 @@ from fakes.wire.sri.frames import frame_length
 from fakes.wire.sri.settings import DataFormat
 
 _LONGEST_LINE = 1024
+"""Bytes without an end of line after which they are dropped. The longest command, which sets the
+matrix, takes about 400."""
 _CATCH_UP_S = 1.0
 """A box whose frames nobody could take for longer than this has dropped them."""
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 Vector = NDArray[np.float64]
 
+# Replies of boxes in public code show about 5.0067 V, 123.691486 and 32775 for a channel; what the
+# other channels differ by is made up. Since they differ, a mix-up of channels shows.
 EXCITATION_V = np.array([5.0067, 5.0067, 5.0071, 5.0064, 5.0069, 5.0066])
 GAIN = np.array([123.691486, 123.702110, 123.688953, 123.710006, 123.695720, 123.699081])
 ZERO_COUNTS = np.array([32775.0, 32761.0, 32790.0, 32744.0, 32770.0, 32782.0])
@@ -31,6 +33,7 @@ FACTORY_MATRIX = np.diag([_FORCE_PER_MV_V] * 3 + [_MOMENT_PER_MV_V] * 3) @ _CROS
 """Rows Fx … Mz in N and N·m, columns the six bridges in mV/V."""
 
 # A converter of 16 bits over 5 V behind the amplifier; signals are in mV for each V of excitation.
+# A count is then 1.23e-4 mV/V, and half of the scale 4 mV/V.
 _COUNTS_PER_MV_V = 65535.0 / 5.0 / 1000.0 * GAIN * EXCITATION_V
 _LOWEST_MV_V = -ZERO_COUNTS / _COUNTS_PER_MV_V
 _HIGHEST_MV_V = (65535.0 - ZERO_COUNTS) / _COUNTS_PER_MV_V

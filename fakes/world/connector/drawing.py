@@ -87,7 +87,8 @@ MICRO_D_15: Final = ConnectorDrawing(
     shell_over_tips_m=0.6e-3,
     insulator_colour=(0.06, 0.15, 0.42),
 )
-"""Two rows, 8 + 7, pitch 1.27 mm; blue insulator."""
+"""Two rows, 8 + 7, blue insulator; the pitch is that of the micro-D class (MIL-DTL-83513). Funnel,
+play and springs are assumed."""
 
 D_SUB_15: Final = ConnectorDrawing(
     name="d-sub-15",
@@ -105,6 +106,7 @@ D_SUB_15: Final = ConnectorDrawing(
     shell_over_tips_m=0.8e-3,
     insulator_colour=(0.38, 0.11, 0.07),
 )
-"""Two rows, 8 + 7, pitch 2.77 mm; red-brown insulator."""
+"""Two rows, 8 + 7, red-brown insulator; pins, pitch and rows are those of the D-sub family
+(DIN 41652). Funnel, play and springs are assumed."""
 
 DRAWINGS: Final = {drawing.name: drawing for drawing in (MICRO_D_15, D_SUB_15)}

@@ -19,10 +19,12 @@ from fakes.world.load.suspension import Contacts, Suspension
 STEP_S = 1e-3
 _SUBSTEPS = 2
 _NEAR_M = 2e-3
+"""Farther away than this a body swings freely, which takes no search for its contacts."""
 _SETTLED = 1e-12
 """Change of place (m, rad) and rate (m/s, rad/s) in a millisecond below which a suspension stands:
 a newton out of balance changes the rate of 50 kg by 2e-5 m/s in that time."""
 _GRAVITY = np.array([0.0, 0.0, -9.80665])
+"""Standard gravity, m/s², in the frame of the cell."""
 _SLIP_M_S = 1e-4
 """Friction is viscous below this speed."""
 _FLANGE_R_TOOL = Rotation.from_euler("x", 180, degrees=True)

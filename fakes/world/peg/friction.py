@@ -7,7 +7,8 @@ from fakes.world.peg.attitude import Pose6, Vector3
 from fakes.world.peg.contact import Contact
 
 SHARE: Final = 0.7
-"""Stiffness of a bristle against that of its contact."""
+"""Stiffness of a bristle against that of its contact. A bristle carries a force at rest without
+creep, which friction by the speed alone would not."""
 _NONE: Final = (0.0, 0.0, 0.0)
 
 Bristles = dict[int, Vector3]
