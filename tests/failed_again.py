@@ -19,7 +19,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:
-    """After the plugin of --last-failed has left out what has passed."""
+    """Give up where too many have failed, once --last-failed has left out what has passed."""
     most, failed = session.config.getoption("most_again"), len(session.items)
     if most is not None and failed > most:
         pytest.exit(f"{failed} tests have failed, which is too many to try again", returncode=1)

@@ -25,7 +25,7 @@ TRIES = 3
 PAUSE_S = 0.1
 """The shortest pause that excuses a failure; the tightest limit in the tests is of this size."""
 STOLEN_SHARE = 0.03
-"""Of all processor time during a test, taken by other guests of the host, which excuses it too.
+"""Share of the processor time that other guests of the host take, which excuses a test too.
 
 The programs that a test has started may stand still while the test itself does not.
 """

@@ -99,7 +99,7 @@ def options_exist(app: typer.Typer | click.Command, words: list[str]) -> None:
 
 @cache
 def study_help() -> str:
-    """Of the program that `cellctl study` hands on to, which only a process of its own may load."""
+    """Help of the program to which `cellctl study` hands on; a process of its own must load it."""
     done = subprocess.run(
         [sys.executable, "-m", "cellctl", "study", "--help"],
         cwd=ROOT,
@@ -162,7 +162,7 @@ def headings(page: Path) -> set[str]:
 
 
 def test_every_page_can_be_found() -> None:
-    """From the README, by links to pages or to the folders that hold them."""
+    """Links lead from the README to every page, or to the folder that holds it."""
     reached: set[Path] = set()
     waiting = [ROOT / "README.md"]
     while waiting:

@@ -69,7 +69,7 @@ class Bench:
 
 
 async def rearm(robot: SiasunRpcRobot) -> None:
-    """Reset as an operator does: again until the link is back and the arm stands."""
+    """Re-arm as an operator does: again until the link is back and the arm stands."""
     async with asyncio.timeout(REARM_S):
         while True:
             with contextlib.suppress(CellError):

@@ -146,7 +146,7 @@ class Soak:
             await asyncio.sleep(0.005)
 
     async def _release(self) -> None:
-        """Reset as an operator does: again until the link is back and the controller accepts."""
+        """Re-arm as an operator does: again until the link is back and the controller accepts."""
         began_s = time.monotonic()
         while time.monotonic() - began_s < REARM_S:
             try:

@@ -118,7 +118,7 @@ class GigeBench(SingleCameraBench):
 
 @pytest.mark.long
 class TestGigeCamera(CameraContract):
-    """Through harvesters, genicam and a producer in C, each of them the real thing.
+    """The driver with harvesters, genicam and a producer in C, each of them the real thing.
 
     Each test starts a process that loads them. A standard run tries the contract with heads.
     """

@@ -180,7 +180,7 @@ class TestTargetServerTracker(TargetTrackerContract):
 
 
 class TestGigeHead(StereoCameraContract):
-    """Through harvesters, genicam and a producer in C, each of them the real thing."""
+    """The driver with harvesters, genicam and a producer in C, each of them the real thing."""
 
     driver = GigeHead
 

@@ -150,7 +150,7 @@ class TestZonedRobot(RobotContract):
 
 
 class TestNotedRobot(RobotContract):
-    """So does what takes notes for the record of a run."""
+    """The layer that takes notes for the record of a run keeps the contract, too."""
 
     @pytest.fixture
     async def bench(self) -> AsyncIterator[RobotBench]:

@@ -96,7 +96,7 @@ def _hole(hole, c1_T_part):
 
 
 class Contact:
-    """In place of the mating: ends on the seat, off it, or with a fault."""
+    """Stands in for the mating: ends on the seat, off it, or with a fault."""
 
     def __init__(self, offset_mm: float = 0.0, fault: Exception | None = None) -> None:
         self.offset_mm, self.fault = offset_mm, fault

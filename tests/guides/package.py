@@ -88,7 +88,7 @@ def run(*arguments: str, path: tuple[Path, ...] = ()) -> "subprocess.CompletedPr
 
 
 def environment(*path: Path) -> dict[str, str]:
-    """Of a program that finds packages in ``path`` first."""
+    """Environment of a program that finds packages in ``path`` first."""
     return os.environ | {
         "PYTHONPATH": os.pathsep.join(str(entry) for entry in path),
         "PYTHONDONTWRITEBYTECODE": "1",

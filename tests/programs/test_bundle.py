@@ -21,7 +21,7 @@ def key(folder: Path, name: str) -> Path:
 
 
 def list_files(bundle: Path) -> None:
-    """As `make bundle` lists them."""
+    """List the files as `make bundle` does."""
     command = "find . -type f -not -name 'SHA256SUMS*' -print0 | xargs -0 sha256sum > SHA256SUMS"
     subprocess.run(command, shell=True, cwd=bundle, check=True)
 

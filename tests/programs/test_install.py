@@ -23,7 +23,7 @@ def make(target: str, into: Path, **variables: str) -> subprocess.CompletedProce
         check=False,
         capture_output=True,
         text=True,
-        # Not what an outer make has set for its own tests.
+        # What an outer make has set for its own tests is left out.
         env={name: value for name, value in os.environ.items() if not name.startswith("MAKE")},
     )
 

@@ -34,7 +34,7 @@ from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 
 WAIT_S = 60.0
-"""For what has to come: long, since only a test that fails waits for it to its end."""
+"""Time for what has to come: long, since only a test that fails waits for it to its end."""
 BY_ANNA: dict[str, Any] = {"source": Source.TERMINAL, "person": "anna"}
 
 
@@ -134,7 +134,7 @@ class DaemonRig:
         self._seq = 0
 
     async def open(self) -> None:
-        """As a daemon starts on this store."""
+        """Open the unit as a daemon does that starts on this store."""
         self.archive = AsyncRunStore(self.store_folder)
         self.unit = UnitController(
             self.bench.as_cell, self.archive, clock=lambda: now_s() + self.ahead_s
@@ -185,7 +185,7 @@ class DaemonRig:
         return await self.unit.machine.wait_for(*states, timeout_s=WAIT_S)
 
     async def idle(self) -> None:
-        """From wherever the unit rests."""
+        """Bring the unit to Idle from wherever it rests."""
         if self.unit.machine.state is State.ABORTED:
             assert await self.take(Command.CLEAR) is RejectCode.NONE
             await self.to(State.STOPPED)

@@ -53,7 +53,7 @@ class Bench:
         await self.robot.move_joint(np.radians(self.poses_deg[name]), speed_ratio=0.5)
 
     async def true_flange_to(self, cell_T_flange: RigidTransform) -> None:
-        """As somebody who knows by what the arm is wrong."""
+        """Move as somebody does who knows by what the arm is wrong."""
         for _ in range(2):
             here = self.robot.state().base_T_flange
             off = here * from_written(self.truth()["cell_T_flange_mm_deg"]).inv()
@@ -162,7 +162,7 @@ async def test_a_module_is_plugged_by_somebody_who_knows_the_truth(tmp_path: Pat
 
 
 async def plug_into_socket(cell: Bench) -> None:
-    """To just above the face, then by steps until the contact springs are open."""
+    """Go to just above the face, then by steps until the contact springs are open."""
     truth = cell.truth()
     flange = from_written(truth["cell_T_flange_mm_deg"])
     flange_T_plug = flange.inv() * from_written(truth["cell_T_plug_mm_deg"])

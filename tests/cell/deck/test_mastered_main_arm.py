@@ -25,7 +25,7 @@ def test_a_main_arm_that_was_mastered_anew(own: OwnCell) -> None:
     base_frame = next(procedure for procedure in PROCEDURES if procedure.number == 103)
     with own.control() as control:
         base_frame.prepare(control)
-        # By the reference that is shipped with the base frame.
+        # The arm is mastered by the reference that is shipped with the base frame.
         plc = own.plc("--mode", "maintenance", "--recipe", "109")
         assert plc.end(120) == 0, plc.stdout
         assert plc.messages[-1]["result"] == "good"

@@ -11,7 +11,7 @@ from tests.rigs.whole_cell.own_cell import OwnCell
 pytestmark = pytest.mark.timeout(200)
 
 TURNED_DEG = 0.04
-"""At two metres from its first axis the head stands 1.3 mm beside where it was calibrated."""
+"""Turn by which the head, two metres from its first axis, is 1.3 mm beside where it was."""
 
 
 def test_a_head_whose_robot_was_mastered_anew(own: OwnCell) -> None:

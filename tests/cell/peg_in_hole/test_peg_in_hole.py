@@ -69,7 +69,7 @@ def test_the_loop_is_measured_and_used(pin: OwnCell) -> None:
 
 
 TURNED_DEG = 0.15
-"""Of the joint that lifts the arm; the tip comes 1.3 mm beside its place by it."""
+"""Turn of the joint that lifts the arm, by which the tip comes 1.3 mm beside its place."""
 
 
 def test_an_arm_that_was_mastered_anew_is_found_at_the_panel(pin: OwnCell) -> None:

@@ -58,7 +58,7 @@ def heads(store: Path) -> list[RunHead]:
 
 
 def calibrated_ten_degrees_aside(folder: Path) -> None:
-    """As if the heads had been taught there before the board transfer was made."""
+    """Calibrate as if the heads had been taught there before the board transfer was made."""
     stored = read_stored(folder, "board_transfer")
     joints_deg = {
         head: [joints[0] - 10.0, *joints[1:]]
@@ -80,7 +80,7 @@ def camera(control: Control) -> list[float]:
 
 
 def without_precision(own: OwnCell) -> None:
-    """So coarse a loop that the deck is soon where it is mated."""
+    """Make the loop so coarse that the deck is soon where it is mated."""
     own.change("threshold_mm = 0.05", "threshold_mm = 0.15\nframes = 1")
     own.change("threshold_deg = 0.006", "threshold_deg = 0.05")
 

@@ -46,7 +46,7 @@ class InProcessRobot(Robot):
         self._connected = False
 
     def cut(self) -> None:
-        """As when the cable breaks for a moment."""
+        """Cut the link as when the cable breaks for a moment."""
         self._halt(LinkLost("cable"))
 
     def state(self, max_age_s: float = 0.25) -> RobotState:

@@ -50,14 +50,14 @@ class DigitalIoBench(ABC):
 
 
 async def until_off(bench: DigitalIoBench, limit_s: float = 5.0) -> None:
-    """Until the device drives nothing."""
+    """Wait until the device drives nothing."""
     async with asyncio.timeout(limit_s):
         while any(bench.driven().values()):  # noqa: ASYNC110  the device tells nobody
             await asyncio.sleep(0.01)
 
 
 async def until_faulty(bench: DigitalIoBench, limit_s: float = 5.0) -> None:
-    """Until the driver has seen the end of the link, which may take a call or two."""
+    """Wait until the driver has seen the end of the link, which may take a call or two."""
     async with asyncio.timeout(limit_s):
         while True:
             try:

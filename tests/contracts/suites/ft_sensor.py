@@ -50,7 +50,7 @@ def values(sample: WrenchSample) -> tuple[float, ...]:
 
 
 def collect(sensor: FtSensor, count: int, limit_s: float = 3.0) -> list[WrenchSample]:
-    """At least so many samples."""
+    """Collect at least so many samples."""
     samples: list[WrenchSample] = []
     deadline_s = time.monotonic() + limit_s
     while len(samples) < count:

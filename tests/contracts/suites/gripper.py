@@ -56,7 +56,7 @@ class GripperBench(ABC):
 
 
 async def until_faulty(bench: GripperBench, limit_s: float = 5.0) -> None:
-    """Until the driver has seen the end of the link, which may take a call or two."""
+    """Wait until the driver has seen the end of the link, which may take a call or two."""
     async with asyncio.timeout(limit_s):
         while True:
             try:

@@ -89,7 +89,7 @@ class RobotContract(ABC):
         return move
 
     async def rearm(self, bench: RobotBench) -> None:
-        """As an operator does: again until the link is back and the controller accepts."""
+        """Re-arm as an operator does: again until the link is back and the controller accepts."""
         async with asyncio.timeout(5.0):
             while True:
                 try:

@@ -128,7 +128,7 @@ class StreamingRobotContract(ABC):
         return here
 
     async def rearm(self, bench: StreamingBench) -> None:
-        """As an operator does: again until the link is back and the controller accepts."""
+        """Re-arm as an operator does: again until the link is back and the controller accepts."""
         async with asyncio.timeout(5.0):
             while True:
                 try:
@@ -137,7 +137,7 @@ class StreamingRobotContract(ABC):
                     await asyncio.sleep(0.05)
 
     async def works_again(self, bench: StreamingBench) -> None:
-        """Not before it is re-armed."""
+        """Show that it works, but not before it is re-armed."""
         with pytest.raises((NotRearmed, LinkError)):
             await self.stream(bench, hold)
         await self.rearm(bench)

@@ -52,7 +52,7 @@ async def within(limit_s: float, task: Awaitable[Value]) -> Value:
 
 
 async def rearm(rig: AnyRig) -> None:
-    """Reset as an operator does: try until the robot's channels are back and it accepts."""
+    """Re-arm as an operator does: try until the robot's channels are back and it accepts."""
     async with asyncio.timeout(5.0):
         while True:
             try:

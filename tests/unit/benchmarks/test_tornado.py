@@ -30,7 +30,7 @@ def test_every_imperfection_is_tried_at_every_size_beside_a_reference() -> None:
     names = {case.imperfection for case in wanted}
     assert names == {*CATALOGUE, NONE, ALL}
     assert {case.scale for case in wanted if case.imperfection == "burr"} == {1.0, 2.0, 5.0}
-    # At once its size it is the reference.
+    # A case of once its size would be the reference.
     assert {case.scale for case in wanted if case.imperfection == "links"} == {2.0, 5.0}
     places = {case.place for case in wanted if case.imperfection == NONE}
     assert places == {"cell", "mating"}

@@ -57,7 +57,7 @@ SIGMA = np.repeat([2e-6, 5e-6], 3)
 
 
 class Head(InProcessHead):
-    """With the serial number of its calibration."""
+    """A head with the serial number of its calibration."""
 
     def __init__(self, name: str, serial: str) -> None:
         super().__init__(name)
@@ -103,7 +103,7 @@ class World:
     base_T_frame: RigidTransform
     flange_T_deck: RigidTransform
     robot_error: RigidTransform = field(default_factory=RigidTransform.identity)
-    """Of the flange, in its own frame: what the encoders do not see."""
+    """Error of the flange, in its own frame, that the encoders do not see."""
     sigma: Array = field(default_factory=lambda: SIGMA)
 
 
@@ -193,7 +193,7 @@ class Bench:
         return DeckCell.of(self.as_cell, self.recipe, self.memory)
 
     def facts(self, **changes: Any) -> RunFacts:
-        """Of a run with the shipped recipe."""
+        """Facts of a run with the shipped recipe."""
         frame, deck = self.features()
         snapshot = self.snapshot()
         values: dict[str, Any] = {

@@ -26,7 +26,7 @@ class TinyGuard:
     gravity_compensated: bool = True
     armed: bool = False
     limits: list[GuardLimits] = field(default_factory=list)
-    """Of every arming."""
+    """Limits of every arming."""
     asked: list[str] = field(default_factory=list)
     faults: dict[str, CellError] = field(default_factory=dict)
     degraded: tuple[str, ...] = ()

@@ -72,7 +72,7 @@ async def test_without_a_stated_load_nothing_is_asked() -> None:
 def test_what_is_weighed_is_the_load_without_the_sensor(
     weighed_kg: float, off_m: float, passed: list[bool]
 ) -> None:
-    """Of the 20 kg 2 kg are the sensor itself, 60 mm before the flange; the rest hangs lower."""
+    """The sensor is 2 kg of the 20 kg, 60 mm before the flange; the rest hangs lower."""
     stated = LoadConfig.model_validate(LOAD | {"not_weighed_kg": 2.0})
     flange_r_com_m = (20.0 * COM_M - 2.0 * BEFORE_SENSOR.translation) / 18.0
     sensor_r_com_m = BEFORE_SENSOR.inv().apply(flange_r_com_m) + np.array([off_m, 0.0, 0.0])

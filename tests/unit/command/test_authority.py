@@ -86,7 +86,7 @@ async def test_a_cell_without_a_line_is_run_from_the_terminal(rig: DaemonRig) ->
 async def test_a_mode_that_was_changed_meanwhile_is_not_started_in(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Between validation and execution."""
+    """The change comes between validation and execution."""
     await rig.idle()
     factory = rig.unit.factory
     validate = factory.validate
@@ -152,7 +152,7 @@ async def test_an_alarm_is_acknowledged_in_the_name_of_who_asks(rig: DaemonRig) 
 async def test_a_line_that_comes_alive_meanwhile_keeps_the_terminal_from_moving(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Between validation and execution."""
+    """The change comes between validation and execution."""
     await rig.idle()
     factory = rig.unit.factory
     validate = factory.validate

@@ -15,7 +15,7 @@ class Mistake:
     features: tuple[str, ...] = ()
     """The feature files in which it stands, where it is not in the cell file."""
     at_the_other: bool = False
-    """Of two keys that contradict each other, the one that was not changed is named."""
+    """Whether, of two keys that contradict each other, the one that was not changed is named."""
 
 
 def deck(old: str, new: str, key: str, said: str) -> Mistake:

@@ -129,4 +129,4 @@ FIGURES = (
         remarked=True,
     ),
 )
-"""Of single figures."""
+"""Slips of single figures."""

@@ -7,7 +7,7 @@ _SENSOR = "force_sensors.force"
 
 
 def _real(old: str, new: str, key: str, said: str) -> Mistake:
-    """In the template, after a key that stands there."""
+    """A mistake in the template, after a key that stands there."""
     return Mistake("cell.toml", old, f"{old}\n{new}", key, said)
 
 

@@ -321,4 +321,4 @@ IN_DRAWINGS = (
     drawn(_DECK, '["P1", "P2", "P3"]', '["P1", "P1", "P2"]', "head_1 lists P1 twice"),
     drawn(_DECK, '["P1", "P2", "P3"]', '["P1", "P2", "P4"]', "without P4, which head_2 sees"),
 )
-"""In the feature files of the fake cell."""
+"""Mistakes in the feature files of the fake cell."""

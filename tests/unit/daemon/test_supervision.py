@@ -166,7 +166,7 @@ async def test_contact_deals_with_its_trips_itself(rig: DaemonRig) -> None:
 
 
 class Port(PaperPort):
-    """With the life of its command task in the test's hand."""
+    """A port whose command task lives as the test wants."""
 
     def __init__(self) -> None:
         super().__init__()

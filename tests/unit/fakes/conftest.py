@@ -10,13 +10,13 @@ CONFIG = Path(__file__).parents[3] / "config"
 
 @pytest.fixture(scope="session")
 def shipped_scenario() -> DeckScenario:
-    """As the demonstration has it."""
+    """The scenario as the demonstration has it."""
     return DeckScenario.read(CONFIG / "deck.scenario.toml")
 
 
 @pytest.fixture(scope="session")
 def scenario(shipped_scenario: DeckScenario) -> DeckScenario:
-    """Without the imperfections that have a test of their own each."""
+    """The scenario without the imperfections that have a test of their own each."""
     return shipped_scenario.without_imperfections()
 
 

@@ -76,5 +76,5 @@ def _drawn(scales: dict[str, float]) -> np.ndarray:
 
 @pytest.mark.parametrize("name", [name for name, one in CATALOGUE.items() if not one.keys])
 def test_switching_one_on_leaves_the_draws_of_the_others(name: str) -> None:
-    """With a size of almost nothing the world is as without it, to almost nothing."""
+    """A size of almost nothing changes the world by almost nothing."""
     np.testing.assert_allclose(_drawn({name: 1e-9}), _drawn({}), atol=1e-6)

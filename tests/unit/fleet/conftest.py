@@ -75,7 +75,7 @@ class Fleet:
         return Delivery(cell, records, self.connected(user), "cellctl 0.1.0 (test)")
 
     def execute(self, statement: str) -> None:
-        """By somebody who has every right."""
+        """Execute a statement as somebody who has every right."""
         self.server.execute(statement, database=self.database)
 
     def close(self) -> None:
@@ -94,7 +94,7 @@ def fleet(
 
 
 def deliver_all(delivery: Delivery, limit: int = 200) -> int:
-    """Until nothing is left; how many batches it took."""
+    """Deliver until nothing is left; how many batches it took."""
     for batches in itertools.count(1):
         if not delivery.deliver(limit):
             return batches

@@ -164,7 +164,7 @@ def another_store(fleet: Fleet) -> None:
 
 
 def backup_put_back(fleet: Fleet) -> None:
-    """As after a broken disk: the newest records of the cell are gone."""
+    """Put a backup back as after a broken disk: the newest records of the cell are gone."""
     with sqlite3.connect(fleet.folder(NORTH) / "store.sqlite") as connection:
         connection.execute("DELETE FROM ledger WHERE number > 5")
     connection.close()

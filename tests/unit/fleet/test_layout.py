@@ -88,7 +88,7 @@ def test_places_are_readable_and_different(fleet: Fleet) -> None:
 
 
 def test_tables_of_an_earlier_version_are_migrated_with_what_is_in_them(fleet: Fleet) -> None:
-    """As schema 2 had them: no head of the ledger, no number of a gauge, no names in the ledger."""
+    """Schema 2 had no head of the ledger, no number of a gauge, no names in the ledger."""
     store = fleet.store(NORTH)
     everything(store)
     delivery = fleet.delivery(NORTH)

@@ -33,7 +33,7 @@ class Watching:
         self._rng = np.random.default_rng(0)
         self.frames: list[int] = []
         self.mastered_beside_rad = np.zeros(6)
-        """By how much the arm really stands beside the joints that it reports."""
+        """How far the arm really stands beside the joints that it reports."""
 
     async def serial_number(self) -> str:
         return "ET-7"
@@ -137,7 +137,7 @@ async def test_a_joint_that_was_mastered_anew_is_found_and_costs_what_rests_on_t
 async def test_a_base_frame_without_a_reference_cannot_be_checked(
     rig: ProcedureRig, watching: Watching
 ) -> None:
-    """As an older version has stored it; nothing is measured or voided then."""
+    """An older version has stored it so; nothing is measured or voided then."""
     folder = rig.bench.calibrations.path
     stored = read_calibration(folder, BASE_FRAME.name)
     record = {key: value for key, value in stored.record.items() if key != "reference"}

@@ -15,7 +15,7 @@ class Checker(HTMLParser):
         self.stack: list[str] = []
         self.texts: list[str] = []
         self.shown: list[str] = []
-        """Of ``texts`` what a reader sees."""
+        """The part of ``texts`` that a reader sees."""
         self.addresses: list[str] = []
         self.tags: set[str] = set()
 

@@ -39,7 +39,7 @@ class HangingDisk:
         self._answers.wait()
 
     async def asked(self) -> None:
-        """Until the write hangs: on a busy PC its time may be up before it has begun."""
+        """Wait until the write hangs: on a busy PC its time may be up before it has begun."""
         assert await asyncio.to_thread(self._asked.wait, WAIT_S)
 
     def answer(self) -> None:

@@ -14,7 +14,7 @@ from tests.unit.daemon_rig import DaemonRig
 
 @pytest.fixture
 async def died(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> DaemonRig:
-    """In contact, with 20 N; the unit is not open."""
+    """A rig whose daemon died in contact, with 20 N; the unit is not open."""
 
     def lost(*_: object, **__: object) -> None:
         raise RecordNotWritten("the daemon was killed")

@@ -35,7 +35,7 @@ def index_of(told: list[dict[str, Any]], **wanted: object) -> int:
 
 @pytest.fixture
 def logged(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch) -> Logged:
-    # Not that of pytest, which closes its own before the unit has ended.
+    # The stream is not that of pytest, which closes its own before the unit has ended.
     stream = io.StringIO()
     monkeypatch.setattr("sys.stderr", stream)
     log.configure()
@@ -48,7 +48,7 @@ async def test_lines_of_a_good_run(logged: Logged) -> None:
     contact.may_end.clear()
     await logged.rig.started()
     await contact.reached.wait()
-    # As a driver does in a thread of its own, which knows nothing of runs.
+    # A driver does this in a thread of its own, which knows nothing of runs.
     driver = threading.Thread(target=lambda: logging.getLogger("drivers.robot").info("late"))
     driver.start()
     driver.join()
@@ -73,7 +73,7 @@ async def test_the_fault_that_ends_a_run_is_told_with_its_step(logged: Logged) -
     logged.rig.contact.may_end.clear()
     await logged.rig.started()
     await logged.rig.contact.reached.wait()
-    # Not from within the step: as the watch of the links does.
+    # The fault comes from outside the step, as from the watch of the links.
     await logged.rig.unit.machine.fail(LinkLost("main"))
     await logged.rig.to(State.ABORTED)
     told = logged.lines

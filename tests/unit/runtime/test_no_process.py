@@ -39,7 +39,7 @@ print(count)
 
 @pytest.fixture
 def nothing_installed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As if the entry points of all processes were gone; drivers stay."""
+    """Make the entry points of all processes disappear; drivers stay."""
     everything = plugins.installed
 
     def without_processes(group: str) -> tuple[EntryPoint, ...]:

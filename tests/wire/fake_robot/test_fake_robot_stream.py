@@ -34,7 +34,7 @@ class StreamBench:
         assert self.controller.command(fields, self.bench.time_s) == []
 
     def run(self, ticks: int = 1) -> list[list[str]]:
-        """So many ticks; what else the controller says is kept in ``ended``."""
+        """Run so many ticks; what else the controller says is kept in ``ended``."""
         records: list[list[str]] = []
         for _ in range(2000):
             if len(records) == ticks or self.ended:

@@ -109,7 +109,7 @@ async def test_the_brighter_view_gets_the_grey(cell: Path, plate: Plate) -> None
 async def test_a_run_finds_it_once_and_records_it(
     automatic: CellConfig, plate: Plate, tmp_path: Path
 ) -> None:
-    """By the setting of the head, in the record of the run; the images after it are exposed so."""
+    """The head's setting asks for it and the run's record has it; later images are exposed so."""
     built = Cell(automatic, tmp_path)
     store = AsyncRunStore(tmp_path / "runs")
     number = await store.do(start)

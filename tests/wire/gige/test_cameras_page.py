@@ -85,7 +85,7 @@ def test_the_first_image_of_a_strange_producer(bench: Path) -> None:
 
 
 def test_two_cameras_without_trigger_as_a_head(bench: Path) -> None:
-    """As "Heads without trigger" says: refused without the time for which nothing moves."""
+    """Refused without the time for which nothing moves, as "Heads without trigger" says."""
     text = bench.read_text(encoding="utf-8")
     text = text.replace("[cameras.eye]", "[stereo_cameras.head_1]")
     text = text.replace("settings.camera.serial_number", "settings.left.serial_number")

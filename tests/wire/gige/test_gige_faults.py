@@ -153,7 +153,7 @@ async def test_a_producer_for_another_kind_of_processor(foreign: Path) -> None:
 async def test_the_folder_of_the_variable_is_enough(
     producer: Path, fakes: FakeCameras, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of several folders, in which other files lie too."""
+    """The producers are in several folders, in which other files lie too."""
     (tmp_path / "read.me").write_text("no producer")
     monkeypatch.setenv("GENICAM_GENTL64_PATH", f"{tmp_path}:{producer.parent}")
     async with camera(producer, producers=()) as eye:

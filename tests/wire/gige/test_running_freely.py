@@ -15,7 +15,7 @@ from fakes.gentl.cameras import FakeCameras, expected_image
 from tests.wire.gige.conftest import LEFT, RIGHT, camera
 
 FRAME_S = 0.020
-"""From frame to frame of a fake that runs freely; it exposes all of the time."""
+"""Time from frame to frame of a fake that runs freely; it exposes all of the time."""
 
 
 def head(producer: Path, **settings: Any) -> GigeHead:

@@ -8,7 +8,7 @@ from tests.rigs.kept import Kept, kept
 
 
 def test_a_short_soak() -> None:
-    # In a process of its own: that of the tests keeps what other tests have not let go yet.
+    # It runs in a process of its own: that of the tests keeps what other tests have not let go.
     times = ["--cycles", "5", "--pulls", "5", "--grabs", "100"]
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.cameras.soak", *times],

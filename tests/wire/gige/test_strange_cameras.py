@@ -144,7 +144,7 @@ async def test_the_exposure_of_an_older_edition(tmp_path: Path, fakes: FakeCamer
 async def test_an_automatic_exposure_is_switched_off_first(
     tmp_path: Path, fakes: FakeCameras
 ) -> None:
-    """As long as it is on the exposure is read-only, as in many cameras."""
+    """The exposure is read-only as long as the automatic one is on, as in many cameras."""
     listed, opening = "    <pFeature>ExposureTime</pFeature>\n", '<Float Name="ExposureTime" '
     text = description().replace(listed, listed + listed.replace("Time", "Auto"))
     lock = "<pIsLocked>ExposureAutoReg</pIsLocked>"

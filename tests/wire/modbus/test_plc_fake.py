@@ -42,7 +42,7 @@ class FakelessCell:
         self.beat: asyncio.Task[None] | None = None
 
     async def submit(self, submission: Submission) -> RejectCode:
-        """As the arbiter does, with checks that refuse only what a dead line may not do."""
+        """Submit as the arbiter does, with checks that refuse only what a dead line may not do."""
         if not submission.command.ends_motion:
             code = submission.link_fault()
             if code is not RejectCode.NONE:

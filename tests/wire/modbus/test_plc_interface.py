@@ -27,7 +27,7 @@ class Line:
 
     def __init__(self) -> None:
         self.commands: list[LineSubmission] = []
-        """As they were executed."""
+        """Commands in the order in which they were executed."""
         self.answer: Callable[[LineSubmission], RejectCode] = lambda _submission: RejectCode.NONE
         self.disk = asyncio.Event()
         self.disk.set()
@@ -37,7 +37,7 @@ class Line:
         self.beat = 0
 
     async def submit(self, submission: Submission) -> RejectCode:
-        """As the arbiter does: Stop and Abort are not validated."""
+        """Submit as the arbiter does: Stop and Abort are not validated."""
         assert isinstance(submission, LineSubmission)
         if not submission.command.ends_motion:
             code = await submission.unless_overtaken(self.validate(submission))

@@ -15,7 +15,7 @@ from tests.rigs.wire.permit_loop import PERMIT, permit_loop
 
 WATCHDOG_MS = 300
 STANDS_S = 0.5
-"""From the alarm: to see the link go, the contact, 0.25 s dead time of the arm, and braking."""
+"""Time from the alarm: to see the link go, the contact, 0.25 s dead time, and braking."""
 
 
 @pytest.fixture

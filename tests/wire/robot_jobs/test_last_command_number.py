@@ -16,7 +16,7 @@ OFFSET = 1_000_000
 
 
 def count_on_from(rig: JobRig, number: int) -> None:
-    """As if so many commands had been given in this session."""
+    """Count on as if so many commands had been given in this session."""
     rig.robot._command._seq = number
     rig.robot._command.channel.session = LAST_SESSION
     rig.controller.memory.numbers["I", 73] = LAST_SESSION + OFFSET

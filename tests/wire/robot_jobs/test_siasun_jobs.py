@@ -59,7 +59,7 @@ async def test_the_contact_stops_beside_background_jobs_that_hang(rig: JobRig) -
 async def test_a_pc_that_comes_late_finds_no_latch() -> None:
     async with job_rig() as rig:
         rig.controller.start()
-        # Longer than the dead man's time: nobody is at the ports that the jobs call.
+        # This is longer than the dead man's time: nobody is at the ports that the jobs call.
         await asyncio.sleep(0.6)
         await rig.robot.connect()
         await rig.robot._state.wait(lambda status: not status.latched, 0.5)

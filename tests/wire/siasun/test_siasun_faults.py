@@ -202,7 +202,7 @@ async def test_a_wrong_hello_is_refused(fault: str, make: Make) -> None:
 
 
 async def test_a_dead_event_loop_lets_the_dead_man_stop_the_arm(rig: AnyRig) -> None:
-    """As when the daemon hangs: heartbeats stay away although the sockets stand."""
+    """The daemon hangs: heartbeats stay away although the sockets stand."""
     moving = move(rig, 100.0, 0.05)
     await until_moving(rig)
     rig.wires["STA"].back.blocked = True
@@ -215,7 +215,7 @@ async def test_a_latch_by_the_dead_man_tells_that_this_pc_has_paused() -> None:
     async with sjl_rig(silence_s=3.0) as rig:
         await rig.connect()
         await rearm(rig)
-        # As when the PC stands still: heartbeats stay away, and come again.
+        # The PC seems to stand still: heartbeats stay away, and come again.
         rig.robot._state._cancel_timer()
         await rig.robot._state.wait(lambda status: status.latched, 2.0)
         await asyncio.sleep(0.1)

@@ -327,7 +327,7 @@ async def test_half_open_command_channel(rig: Rig, direction: str, fault: type[C
 
 
 async def until_moving(rig: Rig) -> None:
-    """Until setpoints have arrived; a stream as such begins before."""
+    """Wait until setpoints have arrived; a stream as such begins before."""
     async with asyncio.timeout(2.0):
         while not rig.arm.moving(rig.controller._clock()):  # noqa: ASYNC110  as above
             await asyncio.sleep(0.002)

@@ -41,7 +41,7 @@ async def test_no_heartbeat_and_no_link_remain(rig: AnyRig) -> None:
     async with asyncio.timeout(1.0):
         while rig.arm.moving(rig.controller._clock()):  # noqa: ASYNC110  no event for it
             await asyncio.sleep(0.01)
-    # Longer than the controller waits before it connects again.
+    # This is longer than the controller waits before it connects again.
     await asyncio.sleep(0.8)
     assert rig.controller.open_channels == []
     assert rig.robot._state._beats == sent

@@ -73,7 +73,7 @@ def test_what_the_guard_does_not_send(method: str, arguments: tuple[Any, ...]) -
 
 
 def exception(number: int) -> bytes:
-    """As the stock library of a server writes it."""
+    """An exception as the stock library of a server writes it."""
     transport = TMemoryBuffer()
     written = TBinaryProtocol(transport)
     written.writeMessageBegin("stop", TMessageType.EXCEPTION, 0)

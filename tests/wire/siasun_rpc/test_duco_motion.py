@@ -28,7 +28,7 @@ from tests.rigs.wire.duco_rig import duco_rig
 from tests.wire.siasun_rpc.duco_moves import begun, move, rearm, stands, up
 
 DH = load_cell(Path(__file__).parents[3] / "config" / "deck.toml").robots["main"].settings["dh"]
-"""Of the fake arm."""
+"""D-H lengths of the fake arm."""
 
 # --- ends of a task
 

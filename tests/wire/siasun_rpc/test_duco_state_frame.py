@@ -12,7 +12,7 @@ from drivers.robot.siasun_rpc.codec.state_frame import FRAME_BYTES, FrameReader,
 
 
 def frame(**changes: bytes) -> bytes:
-    """By the table of docs/protocols/siasun-rpc.md, section 5; keys are ``at_<offset>``."""
+    """A frame by docs/protocols/siasun-rpc.md, section 5; keys are ``at_<offset>``."""
     data = bytearray(1468)
     struct.pack_into("<7f", data, 0, 0.1, -0.2, 0.3, -0.4, 0.5, -0.6, 0.0)
     struct.pack_into("<6f", data, 368, 0.4, -0.1, 0.6, 3.0, 0.0, 1.0)

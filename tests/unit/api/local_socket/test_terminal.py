@@ -1,4 +1,4 @@
-"""From requests to the arbiter and back, around a cell in memory."""
+"""Requests reach the arbiter and come back answered, around a cell in memory."""
 
 import os
 import pwd

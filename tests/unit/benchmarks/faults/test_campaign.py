@@ -20,7 +20,7 @@ TRIALS = chosen(all_trials(), ["emergency-stop/contact", "link-cut/contact", "la
 
 
 class Cell:
-    """In place of a bench: notes that it was opened and closed."""
+    """Stands in for a bench: notes that it was opened and closed."""
 
     opened = 0
     closed = 0
@@ -34,7 +34,7 @@ class Cell:
 
 
 class Played:
-    """In place of a trial: says what comes next."""
+    """Stands in for a trial: says what comes next."""
 
     def __init__(self, *outcomes: object) -> None:
         self.outcomes = list(outcomes)

@@ -1,4 +1,4 @@
-"""From a call to its acceptance: every way is measured beside the bare socket."""
+"""Times from a call to its acceptance: every way is measured beside the bare socket."""
 
 import pytest
 

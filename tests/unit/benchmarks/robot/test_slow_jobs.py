@@ -10,7 +10,7 @@ from benchmarks.robot.slow_jobs import Row, main, measure, table
 from benchmarks.robot.slow_trials import ALIVE, STOPPING, Trial, trial
 
 ROUND_MS = 110.0
-"""Of a background job at 1 ms a statement, with a margin."""
+"""Round of a background job at 1 ms a statement, with a margin."""
 DEADMAN_MS = 300.0
 
 

@@ -13,7 +13,7 @@ CELL_FILE = Path(__file__).parents[4] / "config" / "deck.toml"
 SHIPPED = CELL_FILE.parent / "demo-calibration"
 REQUIRED = [kind for kind in CALIBRATIONS if kind.required]
 SERIALS = {"head_1": "FH-0001", "head_2": "FH-0002", "payload": "M4347K-1"}
-"""Of the instruments of the cell in memory."""
+"""Serial numbers of the instruments of the cell in memory."""
 
 
 def renew_calibrations(folder: Path, valid_for: timedelta = timedelta(days=1)) -> None:

@@ -21,7 +21,7 @@ from tests.unit.cell.guard import TinyGuard
 
 Array = NDArray[np.float64]
 Part = Callable[[Array], Array]
-"""From six numbers of the tip to the wrench on the peg, both in the axes of the task."""
+"""Gives the wrench on the peg for six numbers of the tip, both in the axes of the task."""
 
 SAMPLE_S = 1e-3
 LIMITS = StreamLimits(step_m=2e-4, step_rad=2e-3, travel_m=0.1, travel_rad=0.5, loss_s=0.1)
@@ -91,7 +91,7 @@ class ElasticWorld:
     silent_from_s: float = np.inf
     """The sensor sends nothing after this time."""
     late_ticks: dict[int, float] = field(default_factory=dict)
-    """By number of the tick: periods that it takes instead of one."""
+    """Periods that a tick takes instead of one, by the number of the tick."""
     trip_above_n: float = np.inf
     watches: bool = False
     """Whether the guard trips at the limits that it was armed with, too; it filters nothing."""

@@ -55,7 +55,7 @@ class Head(InProcessHead):
 
 
 class FlickeringHead(Head):
-    """In a light that is never the same twice."""
+    """A head in a light that is never the same twice."""
 
     async def grab(self) -> StereoPair:
         self.grey_a_ms = 10.0 if self.grey_a_ms > 10.0 else 20.0
@@ -71,7 +71,7 @@ class HangingHead(Head):
 
 
 class DeepCamera(InProcessCamera):
-    """Of 12 bits."""
+    """A camera of 12 bits."""
 
     def __init__(self) -> None:
         super().__init__("eye", PixelFormat.MONO16)
@@ -99,7 +99,7 @@ class Notes:
 
 
 def exposures(notes: Notes, **wanted: Any) -> RunExposures:
-    """Of a cell with one head and one camera."""
+    """Exposures of a cell with one head and one camera."""
     asked = AutoExposureConfig(**(HOLES | wanted))
     section = SimpleNamespace(auto_exposure=asked)
     config = SimpleNamespace(cameras={"eye": section}, stereo_cameras={"head_1": section})

@@ -82,7 +82,7 @@ async def test_the_main_arm_swings_only_past_a_retracted_head(
 async def test_a_head_does_not_come_out_beside_a_main_arm_that_has_swung(
     config: CellConfig,
 ) -> None:
-    # As after an abort in procedure 103: nothing but the reports says where the arms are.
+    # This is the state after an abort in procedure 103: only the reports say where the arms are.
     arms = Arms(config, main="home", aux_1="retracted", aux_2="retracted")
     arms.stand("main", swung(config, -1.0))
     with pytest.raises(ZoneTaken, match="main stands in it"):
@@ -94,7 +94,7 @@ async def test_a_head_does_not_come_out_beside_a_main_arm_that_has_swung(
 async def test_a_main_arm_and_a_head_in_one_zone_leave_in_the_order_of_the_cell_file(
     config: CellConfig,
 ) -> None:
-    """As after an abort and a jog at a panel: the main arm leaves first, then the head."""
+    """After an abort and a jog at a panel the main arm leaves first, then the head."""
     arms = Arms(config, main="home", aux_1="measuring", aux_2="retracted")
     arms.stand("main", swung(config, -1.0))
     with pytest.raises(ZoneTaken, match="main stands in it"):

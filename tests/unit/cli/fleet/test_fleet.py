@@ -32,7 +32,7 @@ def run(*words: str, url: str = "") -> Result:
 
 @pytest.fixture
 def url(fleet: Fleet) -> str:
-    """Of a reader; both cells have runs."""
+    """URL of a reader; both cells have runs."""
     for cell in (NORTH, SOUTH):
         store = fleet.store(cell)
         good_run(store)

@@ -18,7 +18,7 @@ from tests.unit.fakes.render.edges import Array, pose_at, random_view, with_blur
 CELLS = 32
 SIZE_PX = (44, 40)
 LIMIT = 3e-3
-"""Of the contrast. Convolving whole pixels would be off by up to 0.03."""
+"""Share of the contrast. Convolving whole pixels would be off by up to 0.03."""
 BLURS_PX = [0.7, pytest.param(1.0, marks=pytest.mark.long), 1.5]
 
 

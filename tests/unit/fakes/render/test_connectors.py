@@ -14,7 +14,7 @@ from fakes.world.connector.drawing import DRAWINGS, SOCKET_T_MATED_PLUG
 
 Array = NDArray[np.float64]
 EVEN = RenderOptions.clean()
-"""Even light, no noise."""
+"""Options with even light and no noise."""
 SMALL_PX = (760, 320)
 
 
@@ -31,7 +31,7 @@ def middle_of_brightness(image: NDArray[np.uint8], px: Array, reach: int = 13) -
 
 
 def offsets_um(picture: api.ConnectorPicture) -> Array:
-    """From the truth to the centroid of every contact that is there, shape (N, 2)."""
+    """Offsets of the centroids from the truth, for every contact that is there, shape (N, 2)."""
     truth = picture.connectors["micro-d-15"].contacts.values()
     found = [
         middle_of_brightness(picture.image, contact.px) - contact.px
@@ -52,7 +52,7 @@ def plug_picture(
         bent_m={"6": (0.1e-3, 0.05e-3)},
         camera_T_connector=api.facing(shift_m=shift_m, yaw_deg=7.0),
     )
-    # On black ground: the ground's own light moves edges, and differently beside a dark wall.
+    # The ground is black because its own light moves edges, and differently beside a dark wall.
     plug = replace(plug, drawing=replace(plug.drawing, insulator_colour=(0.0, 0.0, 0.0)))
     camera = api.nominal_camera(size_px=SMALL_PX)
     return api.render(camera, [plug], look, seed=2)

@@ -35,7 +35,7 @@ def _no_log_in_the_repository(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
 
 @dataclass(frozen=True)
 class Forces:
-    """On the pin: against the wall and along the axis."""
+    """Forces on the pin: against the wall and along the axis."""
 
     side_n: float
     axial_n: float

@@ -39,7 +39,7 @@ PINS = Pins(
     stiffness_n_m=2e7,
 )
 ABOVE_M = 4e-3
-"""Of the deck above its seat at the beginning."""
+"""Height of the deck above its seat at the beginning."""
 LIMITS = seat_limits(
     target_force_n=35.0, abort_force_n=45.0, max_lateral_n=25.0, half_size_m=(0.5, 0.25)
 )
@@ -58,7 +58,7 @@ class Rest:
 
     way_m: float
     deflection: np.ndarray
-    """Of the centre of mass, shape (6,), world axes."""
+    """Deflection of the centre of mass, shape (6,), world axes."""
 
     def verdict(self, rig: Rig) -> SeatVerdict:
         force, torque = np.split(SPRINGS * self.deflection, 2)
@@ -106,7 +106,7 @@ def _pressed(deflection: np.ndarray) -> bool:
 
 
 class PinOracle(Oracle):
-    """With pins on the frame, shifted, and rings of sectors as holes of the deck."""
+    """An oracle with pins on the frame, shifted, and rings of sectors as holes of the deck."""
 
     def __init__(self, rig: Rig, offset_m: float) -> None:
         super().__init__(rig)
@@ -187,7 +187,7 @@ def _mesh(name: str, points: np.ndarray) -> str:
     ],
 )
 def test_the_seat_is_judged_alike(offset_mm: float, findings: tuple[SeatFinding, ...]) -> None:
-    """Within the clearance; beyond it but on the seat; caught by the chamfer far above it."""
+    """The deck is within the clearance, beyond it but on the seat, or caught by the chamfer."""
     here = pinned()
     fake = lowered_in_the_fake(here, offset_mm * 1e-3).verdict(here)
     independent = PinOracle(here, offset_mm * 1e-3).lowered().verdict(here)

@@ -34,7 +34,7 @@ def flange(time_s: float, rotation: tuple[float, ...] = IDENTITY) -> FlangeState
 
 
 def ready_monitor(*, has_channel: bool = False) -> WrenchMonitor:
-    """With a load of nothing, a fresh sample and a fresh pose at time 0."""
+    """A monitor with a load of nothing, a fresh sample and a fresh pose at time 0."""
     monitor = WrenchMonitor(IDENTITY, has_channel=has_channel)
     monitor.channel_up = True
     monitor.contact.set_gravity_compensation([(0.0, 0.0, 0.0)] * 6, (0.0,) * 6, (0.0, 0.0, -1.0))

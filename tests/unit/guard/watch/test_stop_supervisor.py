@@ -59,7 +59,7 @@ def opened(channel: Channel) -> StopSupervisor:
 
 
 def settle(supervisor: StopSupervisor) -> None:
-    """Until the opener's thread has handed over."""
+    """Wait until the opener's thread has handed over."""
     opener = supervisor._opener
     assert opener is not None
     opener.join(5)

@@ -21,7 +21,7 @@ class Wrench:
 
     @classmethod
     def from_vector(cls, fx_to_mz: Array) -> "Wrench":
-        """From shape (6,): Fx, Fy, Fz, Mx, My, Mz."""
+        """A wrench from a vector of shape (6,): Fx, Fy, Fz, Mx, My, Mz."""
         return cls(np.array(fx_to_mz[:3], dtype=float), np.array(fx_to_mz[3:], dtype=float))
 
     @property

@@ -21,7 +21,7 @@ Values = dict[tuple[str, tuple[tuple[str, str], ...]], float]
 
 
 def parsed(text: bytes) -> Values:
-    """By name and labels; a series that comes twice fails."""
+    """Values by name and labels; a series that comes twice fails."""
     found: Values = {}
     for family in text_string_to_metric_families(text.decode()):
         for sample in family.samples:
@@ -94,7 +94,7 @@ def test_what_is_old_is_not_served_as_new(page: Client, paper: PaperDaemon) -> N
 
 
 def test_who_may_read_them(page: Client) -> None:
-    """As for every view: a panel, a token, or somebody who has signed in."""
+    """They are for whom every view is: a panel, a token, or somebody who has signed in."""
     assert page.get("metrics", X_Forwarded_For="10.0.0.9").status == 401
     elsewhere = {"X_Forwarded_For": "10.0.0.9", "Authorization": f"Bearer {TOKEN}line"}
     assert page.get("metrics", **elsewhere).status == 200

@@ -14,7 +14,7 @@ from typing import Any
 class ToldServer:
     url: str = ""
     answers: list[int] = field(default_factory=list)
-    """Of the next requests; 204 when there are no more."""
+    """Answers to the next requests; 204 when there are no more."""
     told: Queue[tuple[dict[str, Any], dict[str, str]]] = field(default_factory=Queue)
     """Message and headers of every request."""
 

@@ -1,4 +1,4 @@
-"""From the daemon's snapshot to the server of a receiver, by the page's own process."""
+"""The page's own process takes news from the daemon's snapshot to a receiver's server."""
 
 from pathlib import Path
 

@@ -48,7 +48,7 @@ class Folder:
         return content
 
     def store(self, kind: str, content: dict[str, Any]) -> None:
-        """As it would have been stored: with an identity of its own."""
+        """Store a calibration as it would have been: with an identity of its own."""
         plain = {key: value for key, value in content.items() if key != "id"}
         path = self.path / "antenna-calibration" / f"{kind}.json"
         path.write_text(json.dumps({"id": content_id(plain), **plain}), encoding="utf-8")

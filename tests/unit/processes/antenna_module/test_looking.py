@@ -102,7 +102,7 @@ def test_frames_of_a_scene_that_moved_meanwhile_are_not_combined() -> None:
 
     still = combined((seen(0.0), seen(2e-6), seen(4e-6)))
     assert still.pose.translation[0] == pytest.approx(2e-6)
-    # As uncertain as one of them: they have drawing, light and plane in common.
+    # The mean is as uncertain as one of them: they have drawing, light and plane in common.
     np.testing.assert_array_equal(still.covariance, seen(0.0).covariance)
     with pytest.raises(LooksDisagree, match=r"20\.0 µm off"):
         combined((seen(0.0), seen(0.0), seen(30e-6)))

@@ -44,7 +44,7 @@ async def test_a_module_that_met_force_does_not_come_again(
     store: AsyncRunStore, fault: int
 ) -> None:
     number = await store.do(ended, "M-7", fault, AntennaModule.name)
-    # Not forgotten by a run that ended for another reason, nor by one of another module.
+    # It is not forgotten by a run that ended for another reason, nor by one of another module.
     await store.do(ended, "M-7", ContactHidden.number, AntennaModule.name)
     await store.do(ended, "M-8", None, AntennaModule.name)
     with pytest.raises(ModuleInQuarantine, match=f"M-7: F{fault} in run {number}"):

@@ -56,7 +56,7 @@ class RunRig:
         self.truth = TruthMeasurer(bench, heads, geometry.base_T_c1.pose)
 
     def run(self, **changes: Any) -> AssemblyRun:
-        """With changes of its facts."""
+        """A run with changes of its facts."""
         opened = OpenRun(
             self.bench.facts(**changes),
             self.board,
@@ -68,7 +68,7 @@ class RunRig:
         return AssemblyRun(opened, cast(PartMeasurer, self.truth))
 
     def ready(self, **changes: Any) -> Ready:
-        """Before the first step."""
+        """The state before the first step."""
         return Ready(self.run(**changes))
 
     async def record(self) -> RunRecord:

@@ -34,7 +34,7 @@ def over(task: SearchTask, seed: int, *, absent: bool = False) -> KinematicMotio
 async def run_cycle(
     motions: KinematicMotions, plan: CyclePlan, phases: list[CyclePhase] | None = None
 ) -> CycleResult:
-    """From above the face; the map of heights has its face where frame A has it."""
+    """A cycle from above the face; the map of heights has its face where frame A has it."""
 
     async def begin(phase: CyclePhase, words: str) -> None:
         assert words

@@ -18,7 +18,7 @@ GOOD = json.dumps({"time_s": 1.0, "travel_mm": 2.0, "fx_n": 3.0}).encode()
 
 
 def recording(*payloads: bytes) -> bytes:
-    """Without checksums, as some writers leave them out: damage then gets as far as it can."""
+    """A recording without checksums, as some write it: damage then gets as far as it can."""
     file = io.BytesIO()
     writer = Writer(file, compression=CompressionType.NONE, enable_crcs=False)
     writer.start()
@@ -60,7 +60,7 @@ def test_a_curve_ends_before_the_first_message_that_is_no_sample(payload: bytes)
 
 _WHOLE = recording(*[GOOD] * 20)
 _LENGTH_AT = _WHOLE.index(GOOD) - 30
-"""Of the first message: the eight bytes after its opcode, before 22 bytes of its own and text."""
+"""Place of the first message's length: eight bytes after its opcode, before 22 bytes and text."""
 
 
 @given(st.integers(0, len(_WHOLE) - 8), st.binary(min_size=1, max_size=8))

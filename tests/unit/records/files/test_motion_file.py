@@ -65,7 +65,7 @@ def test_everything_comes_back() -> None:
 
 
 def test_message_times_are_those_of_the_wall_clock() -> None:
-    """And the schemas are what viewers expect; read by the reader of the format's authors."""
+    """The schemas are what viewers expect, too; the reader of the format's authors reads it."""
     reader = make_reader(io.BytesIO(recording()))
     schemas = {schema.name: schema.encoding for schema, _, _ in reader.iter_messages() if schema}
     assert schemas == dict.fromkeys(("run.command", "run.report", "run.raw"), "jsonschema")

@@ -209,7 +209,7 @@ def test_what_somebody_noted_stands_on_the_first_page_and_in_the_timeline(
         f"note: temperature 21.3 °C, door was open bo, {typed}",
     ):
         assert expected in page, expected
-    # With its unit: a hash on the page may hold the digits.
+    # The unit is part of it, because a hash on the page may hold the digits.
     assert "990 hPa" not in page, "that is the note of another run"
     plain = json.loads((tmp_path / "run.json").read_text())
     assert [note["actor"] for note in plain["notes"]] == [ROOT, ROOT]

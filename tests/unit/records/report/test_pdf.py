@@ -28,7 +28,7 @@ from tests.unit.records.conftest import start
 from tests.unit.records.page import read
 from tests.unit.records.sample import good_run
 
-# Only what begins like a number of its own: ends of hashes are compared as words.
+# These begin like numbers of their own; ends of hashes are compared as words.
 _NUMBER = re.compile(r"(?<![\w.])[-+−±]?\d+(?:\.\d+)?")
 
 

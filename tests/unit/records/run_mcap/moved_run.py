@@ -60,7 +60,7 @@ def motion() -> bytes:
 
 
 def report(time_s: float, place: tuple[float, ...]) -> RobotState:
-    """Of a robot that stands."""
+    """State of a robot that stands."""
     return RobotState(
         time_s=time_s,
         joints_rad=np.zeros(6),

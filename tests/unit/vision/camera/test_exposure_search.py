@@ -30,7 +30,7 @@ def plate(grey: float, *, holes: bool = True) -> Array:
 
 
 def image(light: Array, exposure_s: float) -> Image:
-    """With a black level and noise, as a camera of 8 bit has them."""
+    """An image with a black level and noise, as a camera of 8 bit has them."""
     noise = np.random.default_rng(7).normal(0.0, 1.0, light.shape)
     grey = 4.0 + light * (exposure_s / 1e-3) + noise
     return np.clip(np.rint(grey), 0, 255).astype(np.uint8)

@@ -174,7 +174,7 @@ def test_holes_off_their_drawing_are_explained_when_the_drawing_says_so() -> Non
     off_m = np.column_stack([rng.normal(size=(6, 2)) * 10e-6, np.zeros(6)])
     in_c1 = C1_T_PART.rotation.apply(off_m)
     images = heads(in_c1)
-    # Of the second head the noise is in its own axes.
+    # The noise of the second head is in its own axes.
     images = images[0], heads(C1_T_C2.rotation.inv().apply(in_c1))[1]
     known = UncertainPose(C1_T_C2, np.eye(6) * 1e-16)
     silent = part_pose(*images, known, HOLES)

@@ -18,7 +18,8 @@ C1_T_FRAME = pose_from_xyzabc([470, 190, 500, 1, -9, 181])
 FRAME_T_DECK = pose_from_xyzabc([0.03, -0.02, 15.04, 0.004, 0.003, -0.002])
 DRIFT = np.repeat([1e-4, np.radians(0.01)], 3)
 FRAME_SIGMAS = np.array([0.3, 4.0, 4.0, 4.0, 0.3, 4.0])
-"""Of the holes, in parts of a deck's: two pins, and threads that are seen far worse."""
+"""Standard deviations of the holes, as multiples of a deck's: two pins, and threads that are
+seen far worse."""
 SIGMA_M = np.array([1e-6, 1e-6, 5e-6])
 
 

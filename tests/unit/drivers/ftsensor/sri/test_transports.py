@@ -130,7 +130,7 @@ def test_a_broken_tcp_link_says_so_when_it_sends(box: socket.socket) -> None:
     connection.connect()
     stand(connection)
     peer, _ = box.accept()
-    # With a reset, as a box that has restarted answers.
+    # The peer answers with a reset, as a box that has restarted does.
     peer.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, b"\x01\0\0\0\0\0\0\0")
     peer.close()
     with pytest.raises(LinkLost):  # noqa: PT012

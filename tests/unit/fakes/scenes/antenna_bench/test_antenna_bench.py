@@ -52,7 +52,7 @@ class Hands:
         self.wait(self.arm.standstill_s - self.world.time_s + 0.01)
 
     def true_flange_to(self, cell_T_flange: RigidTransform) -> None:
-        """By what the arm is wrong here; twice, because a long way is wrong differently."""
+        """Correct the arm by its error here; twice, because a long way has another error."""
         for _ in range(2):
             commanded = self.arm.encoder_pose(self.world.time_s)
             off = commanded * self.world.flange("arm").inv()
@@ -91,7 +91,7 @@ class Hands:
 
 
 def held(scenario: BenchScenario, seed: int = 3) -> Hands:
-    """Before the socket, with the module already in the fingers: the way there takes long."""
+    """Hands before the socket with the module in the fingers, because the way there takes long."""
     hands = Hands(bench_at(scenario, "above_socket", seed))
     hands.world.module.place = "gripper"
     jaws = hands.world.jaws["gripper"]

@@ -16,7 +16,7 @@ from tests.unit.fakes.scenes.antenna_bench.placed_arm import bench_at
 
 
 def holding(scenario: BenchScenario, seed: int, pose: str = "above_socket") -> AntennaBench:
-    """With the module in the fingers; hands that are quick, because the test pays for each ms."""
+    """Quick hands with the module in the fingers, because the test pays for each millisecond."""
     hands = scenario.hands.model_copy(update={"travel_mm_s": 200.0, "plugging_mm_s": 20.0})
     world = bench_at(scenario, pose, seed, hands=hands)
     world.module.place = "gripper"

@@ -1,4 +1,4 @@
-"""From the taught poses the heads see what they shall see, whatever the seed."""
+"""The heads see at the taught poses what they shall see, whatever the seed."""
 
 import numpy as np
 import pytest

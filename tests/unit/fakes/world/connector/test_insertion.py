@@ -27,7 +27,7 @@ PAIR = MatingPair(
     MatingSizes.of(MICRO_D_15), HOLES, HOLES, np.full(15, 1.6), np.ones(15), np.zeros(15)
 )
 BEFORE_SPRINGS = np.sort(np.append(np.linspace(0.0, 0.499e-3, 60)[1:], 0.2499e-3))
-"""With the very end of the funnel, where the axial force is highest."""
+"""Depths with the very end of the funnel, where the axial force is highest."""
 WHOLE_WAY = np.linspace(0.0, 2.49e-3, 250)[1:]
 
 

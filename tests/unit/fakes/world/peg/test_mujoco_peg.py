@@ -21,7 +21,7 @@ _DT_S = 1e-4
 _MASS_KG = 2.0
 _INERTIA_KG_M2 = 2e-3
 _CONTACT_N_M = 2e7
-"""Of each of the few contacts that MuJoCo finds; the fake has as much in every slot."""
+"""Stiffness of each of the few contacts that MuJoCo finds; every slot of the fake has it, too."""
 _ABOVE_M = 0.2e-3
 _SECTORS = 32
 _OUTER_M = 25e-3

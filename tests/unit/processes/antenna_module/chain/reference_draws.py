@@ -13,7 +13,7 @@ from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 ARM = ArmFigures(5.53e-6, 1.745e-5, 0.26e-3, 24e-6)
 LEVER_M = 0.24
 IMAGE_M = 0.4e-6
-"""Of one look; marks are the larger ones."""
+"""Standard deviation of one look; marks are the larger ones."""
 OFFSET_M = np.array([0.11e-3, -0.17e-3])
 """Marks beside the axis."""
 NONE = np.zeros(2)

@@ -89,7 +89,7 @@ FILES: dict[str, tuple[Any, Callable[[Path], object]]] = {
 
 
 def places(content: Any, above: tuple[str | int, ...] = ()) -> Iterator[tuple[str | int, ...]]:
-    """Of every value in a file; of a long list its beginning."""
+    """Places of every value in a file; a long list gives those of its beginning."""
     inside = content.items() if isinstance(content, dict) else enumerate(content[:2])
     for key, value in inside:
         yield (*above, key)

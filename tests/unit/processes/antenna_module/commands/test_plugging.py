@@ -208,7 +208,7 @@ def two_connectors(content: Json) -> None:
 
 
 def looks_of_the_next_plug(content: Json) -> None:
-    """As if the poses of the plugged flange were one line off: grips differ from plug to plug."""
+    """Put the poses of the plugged flange one line off: grips differ from plug to plug."""
     plugs = content["plugs"]
     poses = [plug["plugged_base_T_flange"] for plug in plugs]
     for plug, pose in zip(plugs, [*poses[1:], poses[0]], strict=True):

@@ -37,7 +37,7 @@ def touching() -> list[RigidTransform]:
 
 
 def orienting() -> list[RigidTransform]:
-    """At the point, 50 mm along x of the tool, 50 mm to the side of its y."""
+    """Poses at the point, 50 mm along x of the tool, and 50 mm to the side of its y."""
     rotation = Rotation.from_euler("x", 180.0, degrees=True)
     axes = (rotation * FLANGE_T_TIP.rotation).as_matrix()
     return [

@@ -1,4 +1,4 @@
-"""From the stand-off to the seat, and every way in which that ends early."""
+"""The way from the stand-off to the seat, and every way in which it ends early."""
 
 import numpy as np
 import pytest

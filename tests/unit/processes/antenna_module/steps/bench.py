@@ -174,7 +174,7 @@ class Bench:
 
     @property
     def heights_mm(self) -> list[float]:
-        """Of the flange at every place that it was sent to."""
+        """Heights of the flange at every place that it was sent to."""
         return [float(pose.translation[2]) / MM for pose in self.visited]
 
     # -- the gripper and what the sensor feels --------------------------------------------------

@@ -29,7 +29,7 @@ def _at_once(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def picked(bench: Bench) -> Picked:
-    """Over camera II with a module in the gripper."""
+    """The state over camera II with a module in the gripper."""
     bench.base_T_flange = TAUGHT["inspect_plug"]
     bench.feel(sideways_n=0.0)
     run = bench.run()

@@ -20,7 +20,7 @@ from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.state import GripperEmpty, Picked, Planned
 from tests.unit.processes.antenna_module.steps.bench import Bench, chain_plug, nothing_swings
 
-# By their names: the package offers the functions under the names of the modules.
+# Modules are named by text, because the package offers the functions under the same names.
 STEPS = "cellctl.processes.antenna_module.steps"
 find, pick, inspect, locate, plan, over = (
     importlib.import_module(f"{STEPS}.{name}")

@@ -22,14 +22,14 @@ from tests.unit.processes.antenna_module.pushing.contact import PlugWorld, Push,
 from tests.unit.processes.antenna_module.steps.bench import TAUGHT, Bench, nothing_swings
 from tests.unit.processes.antenna_module.steps.test_grip_again import picked
 
-# By their names: the package offers the functions under the names of the modules.
+# Modules are named by text, because the package offers the functions under the same names.
 STEPS = "cellctl.processes.antenna_module.steps"
 verify, inspect, locate, plan = (
     importlib.import_module(f"{STEPS}.{name}")
     for name in ("verify", "inspect_plug", "locate_socket", "plan")
 )
 PRESSED_MM = 0.06
-"""By which fingers and arm give way to what the seat was felt with."""
+"""How far fingers and arm give way to the force with which the seat was felt."""
 
 
 def held(depth_mm: float) -> tuple[float, ...]:

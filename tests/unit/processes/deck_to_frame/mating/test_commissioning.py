@@ -21,7 +21,7 @@ from tests.unit.processes.deck_to_frame.rig import curve, seated
 
 
 class Touching:
-    """In place of the contacts: each as stiff as the test wants."""
+    """Stands in for the contacts: each is as stiff as the test wants."""
 
     def __init__(self) -> None:
         self.plans: list[MatingPlan] = []

@@ -30,7 +30,7 @@ async def plan_of(rig: RunRig, commissioned: Commissioned) -> MatingPlan:
 
 
 def settings_of(rig: RunRig, payload_kg: float = 200.0, **recipe: Any) -> MatingSettings:
-    """Of the shipped recipe with changes."""
+    """Settings of the shipped recipe with changes."""
     changed = rig.bench.recipe.model_copy(update=recipe)
     return mating_settings(rig.bench.deck.force_config, changed, Commissioned(), payload_kg)
 

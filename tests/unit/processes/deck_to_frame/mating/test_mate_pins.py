@@ -16,7 +16,7 @@ ENGAGED_M = (PINS.length_mm + 0.1) * MM
 
 
 def mated(pins: PinSettings | None, hook: Hook | None = None) -> Trial:
-    """As commissioned with this pair of parts, and a quick stop: fast for a mating."""
+    """A mating as commissioned with this pair of parts; a quick stop makes it a fast one."""
     left = np.array([BESIDE_MM * MM, 0.0, 0.0, 0.0, 0.0, np.deg2rad(YAW_DEG)])
     trial = Trial("pins", 11, stiffness_n_m=1e6, stop_latency_ms=20.0)
     special = {"pins": PINS, "left": left}

@@ -33,7 +33,7 @@ LATENCY_S = 0.05
 
 
 def cell_of(world: MatingCell) -> DeckCell:
-    """Without heads and tracker: nothing here looks."""
+    """A cell without heads and tracker, because nothing here looks."""
     config = load_cell(CELL_FILE)
     cell = cast(Cell, SimpleNamespace(config=config, trips_awaited=lambda _: nullcontext()))
     robot, guard = cast(Robot, world.robot), cast(GuardClient, world.guard)
@@ -46,7 +46,7 @@ def cell_of(world: MatingCell) -> DeckCell:
 
 @dataclass
 class Arrivals:
-    """In place of the recorder: where moves were sent, and where they ended."""
+    """Stands in for the recorder: keeps where moves were sent, and where they ended."""
 
     seen: list[tuple[RigidTransform, RigidTransform]] = field(default_factory=list)
 

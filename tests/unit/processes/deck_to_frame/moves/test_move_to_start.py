@@ -1,4 +1,4 @@
-"""To the beginning of a run, and off the station, always on a known straight way."""
+"""Moves to the beginning of a run, and off the station, go on a known straight way."""
 
 import asyncio
 from collections.abc import Callable

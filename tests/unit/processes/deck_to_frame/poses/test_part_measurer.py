@@ -29,7 +29,7 @@ from tests.unit.cell.bench import Bench
 
 PLACE = pose_from_xyzabc([10, 20, 500, 5, 1, 179])
 SIGMA = np.repeat([20e-6, 50e-6], 3)
-"""Of one frame."""
+"""Standard deviations of one frame."""
 
 
 @dataclass

@@ -14,7 +14,7 @@ from tests.unit.procedures.rig import ProcedureRig
 
 
 class Log:
-    """In which order the robots were moved, and where to."""
+    """Keeps in which order the robots were moved, and where to."""
 
     def __init__(self, rig: ProcedureRig, monkeypatch: pytest.MonkeyPatch) -> None:
         self.moves: list[tuple[str, tuple[float, ...]]] = []

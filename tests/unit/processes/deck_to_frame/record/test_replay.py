@@ -59,7 +59,7 @@ class Seeing:
 
 
 def by_their_poses(frame: PartPose, deck: PartPose, heads: HeadGeometry, _: str) -> RelativePose:
-    """As the ``TruthMeasurer`` does, whose parts have no holes."""
+    """Measure as the ``TruthMeasurer`` does, whose parts have no holes."""
     return deck_in_frame(frame, deck, heads, "paper")
 
 

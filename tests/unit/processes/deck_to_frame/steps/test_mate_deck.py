@@ -30,7 +30,7 @@ Report = Callable[[MatingProgress], None]
 
 
 class Mating:
-    """In place of the contact: plans, tells, and ends as the test wants."""
+    """Stands in for the contact: plans, tells, and ends as the test wants."""
 
     def __init__(self, attempts: int = 1, fault: BaseException | None = None) -> None:
         self.plans: list[MatingPlan] = []

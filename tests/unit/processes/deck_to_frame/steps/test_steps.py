@@ -33,7 +33,7 @@ from tests.unit.processes.deck_to_frame.rig import RunRig
 
 
 async def at_the_stand_off(rig: RunRig, **changes: Any) -> AtStandOff:
-    """With changes of the facts of the run."""
+    """The state at the stand-off, with changes of the facts of the run."""
     return await pre_assembly(await measure_deck(await measure_frame(rig.ready(**changes))))
 
 

@@ -30,7 +30,7 @@ def slot(tip: Array) -> Array:
 
 
 def beyond(tip: Array) -> Array:
-    """Beside a plug: nothing to any side, and a floor at 2 mm."""
+    """The world beside a plug: nothing to any side, and a floor at 2 mm."""
     return wall(STIFFNESS_N_M)(tip - [0, 0, 2e-3, 0, 0, 0])
 
 

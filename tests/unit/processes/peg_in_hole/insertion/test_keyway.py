@@ -23,7 +23,7 @@ OVER_THE_HOLE = np.zeros(2)
 
 
 class KeyedMotions(KinematicMotions):
-    """In the hole; the keys meet their keyways at one angle, or at none."""
+    """A peg in the hole, whose keys meet their keyways at one angle, or at none."""
 
     def __init__(self, task: SearchTask, keyway_rad: float | None) -> None:
         super().__init__(task, Truth(OVER_THE_HOLE, np.zeros(2)), np.random.default_rng(0))

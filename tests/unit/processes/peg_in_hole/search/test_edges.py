@@ -14,7 +14,7 @@ from tests.unit.processes.peg_in_hole.search.test_probe import (
 
 FAR_RIM_M = 30e-3
 _SEARCH_RATIO = 1.5
-"""Of the search force, that a contact of a search may reach (R3 of the study)."""
+"""Multiple of the search force that a contact of a search may reach (R3 of the study)."""
 
 
 def test_a_slide_lets_the_peg_go_at_a_flank_before_the_force_adds_up() -> None:

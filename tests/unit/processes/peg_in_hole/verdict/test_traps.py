@@ -45,5 +45,5 @@ def test_pushes_alone_tell_a_peg_that_is_not_between_its_walls(state: PegState) 
 
 
 def test_pushes_alone_accept_a_peg_in_a_blocked_hole() -> None:
-    """Hence the item about slip."""
+    """This is why the verdict has an item about slip."""
     assert all(run_trap(pin(), PegState.BLOCKED, seed).captured for seed in range(20))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from drivers.camera.gige.library_process.image_memory import MOST_FREE, ImageMemory
 
 DESCRIPTORS = 2
-"""Of a block: its own, and that of Python's mapping."""
+"""Descriptors of a block: its own, and that of Python's mapping."""
 
 
 def image(level: int, size: int = 5000) -> NDArray[np.uint8]:
