@@ -44,7 +44,7 @@ class RunStore:
         """Open the store in a folder, migrate an older one, or create it.
 
         A write waits ``lock_wait_s`` for another writer. Raises ``StoreUnavailable``,
-        ``StoreTooNew``; ``StoreHeldByEarlierVersion`` where a daemon works with an older one.
+        ``StoreTooNew``, ``StoreLocked``; ``StoreHeldByEarlierVersion`` for an older one in use.
         """
         self.path = path
         self._ownership = Ownership(path / "owner.lock")

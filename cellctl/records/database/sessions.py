@@ -47,7 +47,7 @@ class Database:
 
         Readers migrate, too: an operator lists the runs of an old store before any daemon opens
         it. ``alone`` keeps every daemon off meanwhile. Raises ``StoreUnavailable``,
-        ``StoreTooNew``, and what ``alone`` raises.
+        ``StoreTooNew``, ``StoreLocked``, and what ``alone`` raises.
         """
         self._failed: str | None = None
         if not (create or file.exists()):
@@ -67,7 +67,9 @@ class Database:
             raise
         except (OSError, SQLAlchemyError, sqlite3.Error) as error:
             self.close()
-            raise StoreUnavailable(f"{file}: {_reason(error)}") from error
+            # Only a store that is created or migrated is written to here.
+            fault = StoreLocked if _is_locked(error) else StoreUnavailable
+            raise fault(f"{file}: {_reason(error)}") from error
 
     def _version(self) -> int:
         with self._reader().connect() as connection:
@@ -146,12 +148,18 @@ def _engine(file: Path, lock_wait_s: float) -> Engine:
     return engine
 
 
-def _is_locked(error: DBAPIError) -> bool:
+def _is_locked(error: Exception) -> bool:
     """Whether another connection held the lock; SQLite has several codes for where it met it."""
-    code: int = getattr(error.orig, "sqlite_errorcode", sqlite3.SQLITE_OK)
+    code: int = getattr(_cause(error), "sqlite_errorcode", sqlite3.SQLITE_OK)
     # The low byte is the kind of error, the rest says more of it (sqlite.org/rescode.html).
     return code & 0xFF == sqlite3.SQLITE_BUSY
 
 
 def _reason(error: Exception) -> str:
-    return str(getattr(error, "orig", None) or error)
+    return str(_cause(error))
+
+
+def _cause(error: Exception) -> Exception:
+    """The error of SQLite where SQLAlchemy has wrapped it."""
+    cause: Exception = getattr(error, "orig", None) or error
+    return cause

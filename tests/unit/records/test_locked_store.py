@@ -5,6 +5,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 
@@ -14,6 +15,7 @@ from cellctl.records.async_store import AsyncRunStore
 from tests.unit.records.conftest import start
 
 SHORT_S = 0.05
+OLD = Path(__file__).parents[2] / "data" / "store-v2"
 
 
 @pytest.fixture
@@ -65,3 +67,12 @@ async def test_a_write_waits_for_a_lock_that_is_given_back(
     await write
     assert await archive.do(RunStore.line_seq) == 7
     archive.close()
+
+
+def test_a_lock_keeps_an_older_store_from_being_migrated_and_says_so(tmp_path: Path) -> None:
+    old = Path(copytree(OLD, tmp_path / "store"))
+    with closing(sqlite3.connect(old / "store.sqlite")) as other_writer:
+        other_writer.execute("BEGIN IMMEDIATE")
+        with pytest.raises(StoreLocked):
+            RunStore(old, lock_wait_s=SHORT_S)
+    RunStore(old).close()
