@@ -5,7 +5,7 @@ import numpy as np
 from fakes.faults import FaultBoard
 from fakes.scenes.deck_on_frame.flex import hang_m
 from fakes.scenes.deck_on_frame.parts import PartsTruth
-from fakes.scenes.deck_on_frame.pins import pin_faces
+from fakes.scenes.deck_on_frame.pins import DIRECTIONS, pin_faces
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.world.frames import MM, Array
 from fakes.world.load.contact import ContactPoints
@@ -45,7 +45,7 @@ def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> Contac
     wedges = Contacts.none().wedges
     if scenario.contact.pins is not None:
         faces = pin_faces(scenario.contact.pins, parts)
-        wedges = np.arange(len(faces.points_m)).reshape(-1, 3) + len(points)
+        wedges = np.arange(len(faces.points_m)).reshape(-1, DIRECTIONS, 3) + len(points)
         points = np.vstack([points, faces.points_m])
         directions = np.vstack([directions, faces.directions])
         anchors = np.vstack([anchors, faces.anchors_m])
@@ -54,7 +54,7 @@ def rim(scenario: DeckScenario, parts: PartsTruth, faults: FaultBoard) -> Contac
     points[:, 2] -= hang_m(scenario, points[:, :2])
     half_size = np.array(scenario.parts.size_mm) / 2 * MM
     ahead = np.ones(len(points), dtype=bool)
-    ahead[wedges[:, :2]] = False
+    ahead[wedges[..., :2]] = False
     holding = np.append(holding, np.zeros(len(points) - len(holding), dtype=bool))
     return ContactPoints(points, directions, anchors, stiffness, half_size, wedges, ahead, holding)
 

@@ -6,7 +6,8 @@ along u and z the height of the deck's underside above the frame, the obstacle i
 
     rho > clearance   and   z < length   and   below the chamfer's line
 
-Whoever is inside is pushed out through the nearest of the three faces. Sixteen directions a pin.
+Whoever is inside is pushed out through the nearest of the three faces. Sixteen directions a pin,
+which share its top: that carries once, with the stiffness of the pin.
 The hole is felt at its mouth only: no resistance against tilt by a long engagement.
 """
 

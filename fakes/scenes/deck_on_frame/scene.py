@@ -198,14 +198,14 @@ class DeckOnFrame(World[DeckScenario]):
         return report
 
     def _slip(self) -> None:
-        """The arm jerks into motion; a deck that the frame carries stays where it is."""
+        """The arm jerks into motion; a deck that frame or pins hold stays where it is."""
         parts = self.placed.parts
         slip = next(self._slips, None)
         if parts is None or slip is None or self.payload.contact_force_n > 0:
             return
         parts = replace(parts, flange_T_deck=parts.flange_T_deck * slip)
-        self.placed = replace(self.placed, parts=parts)
-        self.payload.regrip(parts.flange_T_deck)
+        if self.payload.regrip(parts.flange_T_deck):
+            self.placed = replace(self.placed, parts=parts)
 
     def _load(self) -> dict[str, Any]:
         self.load_parts()

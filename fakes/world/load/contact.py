@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from fakes.world.frames import Array
-from fakes.world.load.suspension import Contacts, Flags, Rows
+from fakes.world.load.suspension import Contacts, Flags, Wedges
 
 OUT_OF_REACH_M = 1.0
 
@@ -21,8 +21,8 @@ class ContactPoints:
     stiffness_n_m: Array
     half_size_m: Array
     """Farther aside than this, the body is not over the other one."""
-    wedges: Rows
-    """Shape (m, 3): rows that together bound one convex obstacle, its top last."""
+    wedges: Wedges
+    """Shape (m, d, 3): rows that bound an obstacle in each direction around it, its top last."""
     ahead: Flags
     """Shape (n,): rows that are met along the approach. Beside a pin its wall is always near."""
     holding: Flags
@@ -46,7 +46,7 @@ class ContactPoints:
         directions = com_T_body.rotation.apply(self.directions)
         jacobian = np.hstack([directions, np.cross(places, directions)])
         stiffness = self.stiffness_n_m
-        # Rows that carry are closed together and damp as one spring of their sum; of a wedge only
+        # Rows that carry are closed together and damp as one spring of their sum; of a wedge
         # one face pushes at a time, and damps by its own stiffness.
         together = stiffness.copy()
         carrying = np.ones(len(stiffness), dtype=bool)

@@ -70,15 +70,25 @@ class Payload:
         self.peak_contact_force_n = 0.0
         self.load = np.zeros(6)
 
-    def regrip(self, flange_T_body: RigidTransform) -> None:
-        """The body hangs a few micrometres elsewhere from now on: too little for the levers."""
+    def regrip(self, flange_T_body: RigidTransform) -> bool:
+        """The body hangs a few micrometres elsewhere from now on: too little for the levers.
+
+        False, and nothing has changed, where it would be pressed into something there: a wall
+        beside it holds it back, and a body that is put into a stiff wall would be given an energy
+        that no slip has.
+        """
         if self.touch is None:
-            return
+            return True
+        body = flange_T_body.as_matrix()
+        if self._pose is not None:
+            gaps = self.touch.points.gaps(self._other_T_cell @ self._pose @ body)
+            if self.suspension.closes(gaps):
+                return False
+            self._gaps = gaps
         self._settled = False
         self.touch = replace(self.touch, flange_T_body=flange_T_body)
-        self._body_matrix = flange_T_body.as_matrix()
-        if self._pose is not None:
-            self._gaps = self._gaps_at(self._pose)
+        self._body_matrix = body
+        return True
 
     def advance(self, flange: Array, *, moving: bool) -> None:
         """One millisecond on; ``flange`` is the true cell_T_flange at its end, 4x4."""

@@ -16,6 +16,7 @@ from fakes.scenario_file.sections import Springs
 from fakes.world.frames import Array
 
 Rows = np.ndarray[tuple[int, int], np.dtype[np.intp]]
+Wedges = np.ndarray[tuple[int, int, int], np.dtype[np.intp]]
 Flags = np.ndarray[tuple[int], np.dtype[np.bool_]]
 
 
@@ -26,8 +27,8 @@ class Contacts:
     jacobian: Array
     stiffness_n_m: Array
     damping_n_s_m: Array
-    wedges: Rows = field(default_factory=lambda: np.zeros((0, 3), dtype=np.intp))
-    """Shape (m, 3): rows that bound one convex obstacle; inside, only the nearest face pushes."""
+    wedges: Wedges = field(default_factory=lambda: np.zeros((0, 0, 3), dtype=np.intp))
+    """Shape (m, d, 3): rows of the two side faces and the top of m obstacles in d directions."""
     holding: Flags | None = None
     """Shape (n,): rows that pull as well once they were closed, until nothing is in reach."""
 
@@ -73,6 +74,10 @@ class Suspension:
         reach = np.maximum(self._depths(gaps), 0.0)
         elastic = self.stiffness @ self.deflection**2 + self.contacts.stiffness_n_m @ reach**2
         return float(0.5 * (elastic + self.mass @ self.rate**2))
+
+    def closes(self, gaps: Array) -> bool:
+        """True where a contact would be closed at these gaps and the present deflection."""
+        return bool((self._depths(gaps) > 0).any())
 
     def free(self, step_s: float, wrench: Array) -> None:
         """Advance with nothing in reach; what was held is free again."""
@@ -122,13 +127,11 @@ class Suspension:
         wedges = self.contacts.wedges
         if not len(wedges):
             return np.asarray(depths)
-        inside = depths[wedges]
-        hit = inside.min(axis=1) > 0
+        faces = depths[wedges]
         depths[wedges] = -1.0
-        # Rarely is a wedge entered, and the search for its nearest face is slow.
-        if hit.any():
-            nearest = inside[hit].argmin(axis=1)
-            depths[wedges[hit, nearest]] = inside[hit, nearest]
+        # Rarely is an obstacle entered, and the search for its nearest faces is slow.
+        for index in np.flatnonzero((faces.min(axis=2) > 0).any(axis=1)):
+            _push_out(depths, wedges[index], faces[index])
         return np.asarray(depths)
 
     def _propagator(self, closed: Flags | None, step_s: float) -> tuple[Array, Array]:
@@ -147,3 +150,19 @@ class Suspension:
             exact = expm(system * step_s)
             self._propagators[key] = (exact[:12, :12], exact[:12, 12:])
         return self._propagators[key]
+
+
+def _push_out(depths: Array, rows: Rows, faces: Array) -> None:
+    """Close the rows that push out of one obstacle; ``rows`` and their depths (m) are (d, 3).
+
+    In each direction the nearer side face pushes, or the top in place of all of them: once, because
+    the directions share it. It is what costs less energy, so no edge makes any.
+    """
+    sides = faces[:, :2]
+    reach = np.maximum(sides.min(axis=1), 0.0)
+    deepest = reach.argmax()
+    top = faces[deepest, 2]
+    if max(top, 0.0) ** 2 < reach @ reach:
+        depths[rows[deepest, 2]] = top
+    else:
+        depths[rows[np.arange(len(rows)), sides.argmin(axis=1)]] = reach

@@ -57,6 +57,20 @@ def settled(payload: Payload, flange: np.ndarray, steps: int = 3000) -> np.ndarr
     return payload.suspension.spring_wrench
 
 
+def push(payload: Payload, gaps: np.ndarray) -> np.ndarray:
+    """Force of the pins on the deck without dampers, shape (3,), tool axes."""
+    depths = np.maximum(payload.suspension._depths(gaps), 0.0)
+    contacts = payload.suspension.contacts
+    return np.asarray((contacts.stiffness_n_m * depths) @ contacts.jacobian[:, :3])
+
+
+def contact_energy(payload: Payload, gaps: np.ndarray) -> float:
+    """What the contacts store (J)."""
+    suspension = payload.suspension
+    springs = 0.5 * float(suspension.stiffness @ suspension.deflection**2)
+    return suspension.energy(gaps) - springs
+
+
 @pytest.mark.parametrize("angle_deg", [0.0, 11.25, 45.0, 200.0])
 def test_the_wall_holds_what_lies_beyond_the_clearance(
     scenario: DeckScenario, angle_deg: float
@@ -113,9 +127,15 @@ def test_friction_holds_the_deck_back_on_its_way_in(scenario: DeckScenario) -> N
     assert up_n == pytest.approx(0.15 * abs(sideways_n), rel=0.2)
 
 
-def test_free_motion_beside_a_pin_makes_no_energy(scenario: DeckScenario) -> None:
+@pytest.mark.parametrize(
+    ("x_mm", "height_mm"), [(0.06, 1.0), (0.06, 2.02), (0.62, 3.005)], ids=["wall", "edge", "top"]
+)
+def test_free_motion_beside_a_pin_makes_no_energy(
+    scenario: DeckScenario, x_mm: float, height_mm: float
+) -> None:
+    """Along the wall, over the chamfer onto the wall, and from the top onto the chamfer."""
     payload = hanging(scenario)
-    flange = at(0.06, 0.0, 1.0)
+    flange = at(x_mm, 0.0, height_mm)
     payload.advance(flange, moving=False)
     payload.suspension.state[6:9] = [2e-3, 1e-3, -1e-3]
     gaps = payload._gaps_at(flange)
@@ -123,5 +143,57 @@ def test_free_motion_beside_a_pin_makes_no_energy(scenario: DeckScenario) -> Non
     for _ in range(400):
         payload.advance(flange.copy(), moving=True)
         energies.append(payload.suspension.energy(gaps))
+    assert payload.peak_contact_force_n > 0.0
     assert max(energies[1:]) <= 1.05 * energies[0]
     assert energies[-1] < 0.9 * energies[0]
+
+
+def test_the_forces_of_pins_come_from_an_energy_without_a_jump(scenario: DeckScenario) -> None:
+    """Across every edge of chamfer, wall and top: what a small step gains or costs is its work."""
+    payload = hanging(scenario)
+    suspension = payload.suspension
+    rng = np.random.default_rng(3)
+    step_m, most_n = 2e-8, 0.0
+    for _ in range(150):
+        radius_mm, angle = rng.uniform(0.04, 0.9), rng.uniform(0.0, 2.0 * np.pi)
+        suspension.state[:] = 0.0
+        flange = at(radius_mm * np.cos(angle), radius_mm * np.sin(angle), rng.uniform(2.0, 3.0))
+        gaps = payload._gaps_at(flange)
+        way = rng.normal(size=3)
+        way /= np.linalg.norm(way)
+        suspension.state[:3] = -20 * step_m * way
+        before = contact_energy(payload, gaps)
+        force = push(payload, gaps)
+        for _ in range(40):
+            suspension.state[:3] += step_m * way
+            now, after = push(payload, gaps), contact_energy(payload, gaps)
+            work = -0.5 * (force + now) @ way * step_m
+            edge_n = float(np.linalg.norm(now - force))
+            assert after - before == pytest.approx(work, abs=1.1 * edge_n * step_m + 1e-12)
+            most_n = max(most_n, float(np.linalg.norm(now)))
+            before, force = after, now
+    assert most_n > 100.0
+
+
+def test_the_top_of_a_pin_carries_once(scenario: DeckScenario) -> None:
+    """However many directions overlap there: else a pin would be stiffer than it is."""
+    payload = hanging(scenario.without_imperfections())
+    settled(payload, at(1.5, 0.2, 2.98))
+    pins = sum(hole.pin for hole in scenario.parts.holes)
+    assert np.count_nonzero(payload.suspension.normal_forces) == pins
+
+
+def test_a_deck_slips_in_its_grip_no_further_than_a_pin_lets_it(scenario: DeckScenario) -> None:
+    payload = hanging(scenario)
+    flange = at(0.048, 0.0, 1.0)
+    payload.advance(flange, moving=False)
+    assert payload.touch is not None
+    deck = payload.touch.flange_T_body
+    against, away = (
+        RigidTransform.from_translation([x_mm * 1e-3, 0.0, 0.0]) * deck for x_mm in (0.005, -0.005)
+    )
+    assert not payload.regrip(against)
+    payload.advance(flange.copy(), moving=True)
+    assert payload.peak_contact_force_n == 0.0
+    assert payload.regrip(away)
+    assert payload.touch.flange_T_body == away
