@@ -1,0 +1,1 @@
+"""A PC that boots: the systemd of this machine as the first process of namespaces of its own."""
