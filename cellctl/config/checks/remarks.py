@@ -92,7 +92,11 @@ def _gripper_channels(cell: CellConfig) -> Iterator[ConfigIssue]:
                 "right if they are wired so; exchanged, it closes when it is to open"
             )
             yield ConfigIssue(f"{path}.close_valve", str(channels["close_valve"]), said)
-        for first, second in _PAIRS:
+        part = settings.get("part_sensor")
+        # A sensor that says that a part is held lies beside those of the jaws.
+        beside = [("closed_sensor", "part_sensor")] if isinstance(part, int) else []
+        channels |= {"part_sensor": part} if beside else {}
+        for first, second in (*_PAIRS, *beside):
             if abs(channels[first] - channels[second]) >= _CHANNELS:
                 said = (
                     f"{_CHANNELS} channels or more from {first}: right if it is on another terminal"

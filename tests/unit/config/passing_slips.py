@@ -107,15 +107,11 @@ FIGURES = (
     ),
     Kind("the number by which the line asks for it: the line's to say", ("recipes.id x10",)),
     Kind(
-        "a channel of a coupler on which nothing or something else lies: no sensor answers when "
-        "the gripper is first switched, before it holds anything",
-        ("grippers.gripper.settings.part_sensor x10",),
-    ),
-    Kind(
         "such parts and terminals exist",
         (
             "grippers.gripper.settings.close_valve x10",
             "grippers.gripper.settings.closed_sensor x10",
+            "grippers.gripper.settings.part_sensor x10",
             "recipes.fit.clearance_mm x10",
             "recipes.fit.peg_radius_mm /10",
             "recipes.fit.keys.window_deg x10",

@@ -36,6 +36,9 @@ _MIN_ANGLE_RAD = np.radians(10)
 """Least angle between the two directions that the three points span."""
 STILL_RAD = float(np.radians(0.1))
 """The flange keeps its orientation between the three orienting poses."""
+TIP_FROM_FLANGE = "tip from the flange, less than the touched point from the base"
+"""Name of the check whose limit is the distance of the touched point from the base: an arm reaches
+farther than its tool is long."""
 _LEAST_MOVED_M = 1e-3
 """Of the flange about a tip that stays: far less than any tool is long."""
 
@@ -102,7 +105,7 @@ def calibrate_tool(
     Raises ``PosesNotDiverse`` or ``IllConditioned``.
     """
     limits = limits or ToolLimits()
-    position, covariance, residuals, conditioning = _position(touching, touch_sigma_m)
+    position, point, covariance, residuals, conditioning = _position(touching, touch_sigma_m)
     rotation, rotation_covariance = Rotation.identity(), np.zeros((3, 3))
     method = "four-point method for the position"
     if orienting:
@@ -116,6 +119,9 @@ def calibrate_tool(
     checks: Checks = (
         LimitCheck("largest residual", residuals.max() / MM, limits.residual_m / MM, "mm"),
         LimitCheck("position sigma", tool.sigma[:3].max() / MM, limits.position_sigma_m / MM, "mm"),
+        # Inverted poses fit as well as the right ones, with tip and touched point exchanged: only
+        # their lengths tell which is which.
+        LimitCheck(TIP_FROM_FLANGE, _length_mm(position), _length_mm(point), "mm"),
     )
     # What was not measured has no sigma that could pass or fail.
     if orienting:
@@ -126,8 +132,9 @@ def calibrate_tool(
 
 def _position(
     poses: Sequence[RigidTransform], touch_sigma_m: float
-) -> tuple[Array, Array, Array, float]:
-    """Tip in the flange, its covariance, the residual per pose, and the conditioning.
+) -> tuple[Array, Array, Array, Array, float]:
+    """Tip in the flange, the touched point in the base, covariance of the tip, the residual per
+    pose, and the conditioning.
 
     R_i t + p_i = c for all poses: linear in the tip t and the point c.
     """
@@ -162,7 +169,12 @@ def _position(
     sigma_m = max(estimated, touch_sigma_m)
     covariance = np.linalg.inv(design.T @ design)[:3, :3] * sigma_m**2
     distances = np.linalg.norm(residuals, axis=1)
-    return solution[:3], covariance, distances, float(singular[0] / singular[-1])
+    conditioning = float(singular[0] / singular[-1])
+    return solution[:3], solution[3:], covariance, distances, conditioning
+
+
+def _length_mm(place_m: Array) -> float:
+    return float(np.linalg.norm(place_m)) / MM
 
 
 def _orientation(

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.solvers.tool.tool import ToolResult, calibrate_tool
+from cellctl.calibration.solvers.tool.tool import TIP_FROM_FLANGE, ToolResult, calibrate_tool
 from cellctl.errors import CellError
-from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
 
 _LEAST_WITHOUT = 5
 """Touches of which one may be left out: four are needed, and four may fit by luck."""
@@ -24,9 +24,9 @@ def tool_mistakes(
     """What is probably wrong with the poses, as warnings; empty for good ones."""
     said = []
     tip_m = np.asarray(result.flange_T_tool.pose.translation)
-    if result.passed and _is_inverted(touching, tip_m):
+    if [check.name for check in result.checks if not check.passed] == [TIP_FROM_FLANGE]:
         said.append(
-            "the poses are inverted (flange_T_base)? The tool would be longer than its reach"
+            "the poses are inverted (flange_T_base)? The tool would be longer than the arm reaches"
         )
     elif not result.passed and (hint := _explanation(touching)):
         said.append(hint)
@@ -39,16 +39,6 @@ def tool_mistakes(
             "of the orienting poses exchanged, or was the tip moved along -x or -y?"
         )
     return tuple(said)
-
-
-def _is_inverted(touching: Sequence[RigidTransform], tip_m: Array) -> bool:
-    """Whether tip and touched point have changed places.
-
-    Inverted poses meet in a point as well, so that no residual shows them: the place of the point
-    in the base is taken for that of the tip on the flange.
-    """
-    point = calibrate_tool([pose.inv() for pose in touching]).flange_T_tool.pose.translation
-    return bool(np.linalg.norm(tip_m) > np.linalg.norm(point))
 
 
 def _explanation(touching: Sequence[RigidTransform]) -> str:

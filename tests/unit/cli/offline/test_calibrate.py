@@ -301,6 +301,9 @@ def test_inverted_poses_of_a_tool_are_named(tmp_path: Path) -> None:
     data = {"touching": [written(pose.inv()) for pose in touching]}
     result = call("tool", "--in", save(tmp_path / "tool.json", data))
     assert "the poses are inverted (flange_T_base)?" in result.output
+    assert "FAIL  tip from the flange" in result.output
+    assert "NOT passed" in result.output
+    assert result.exit_code == 3
     assert "inverted" not in call("tool", "--in", save(tmp_path / "t.json", tool_data())).output
 
 
