@@ -13,6 +13,7 @@ from cellctl.atomic_files import may_write
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig
+from cellctl.config.checks.arms.needs import arm_needs, rooms
 from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.commissioning import examine_before_commissioning
 from cellctl.config.document.lines import FILL_IN, left_open
@@ -147,6 +148,7 @@ def _show_cell(
         console.print(f"  {key:32} {device.driver}", markup=False)
     _say_what_is_not_checked(console, cell)
     _say_what_zones_hold(console, cell)
+    _say_what_boxes_leave(console, cell)
     console.print(f"  {'poses':32} {_POSES}", markup=False)
     model = model_path(cell_file)
     if model.exists():
@@ -197,6 +199,19 @@ def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
         order = ", then ".join(zone.retreat) or "nobody while another one is in it"
         console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}", markup=False)
         console.print(f"  {'':32} leaves first: {order}", markup=False)
+
+
+def _say_what_boxes_leave(console: Console, cell: CellConfig) -> None:
+    """Room of each box of a flange: it is to hold what the arm has to reach, and little more."""
+    for needs in arm_needs(cell):
+        for room in rooms(cell.robots[needs.name], needs):
+            left = ", ".join(
+                f"-{axis} {below:.0f} +{axis} {above:.0f}"
+                for axis, below, above in zip("xyz", room.below_mm, room.above_mm, strict=True)
+            )
+            name = f"robots.{needs.name} {room.key.rsplit('.', 1)[-1]}"
+            text = f"leaves beyond taught poses and stated moves: {left} mm"
+            console.print(f"  {name:32} {text}", markup=False)
 
 
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:

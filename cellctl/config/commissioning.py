@@ -9,6 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.arms.boxes import box_issues, box_remarks
+from cellctl.config.checks.arms.tables import table_issues, table_remarks
 from cellctl.config.checks.cross_checks import unpermitted
 from cellctl.config.checks.plausible.findings import plausibility_issues
 from cellctl.config.checks.remarks import cell_remarks
@@ -49,6 +51,8 @@ def _implausible(cell: CellConfig, path: Path, found: list[ConfigIssue]) -> Iter
     """What is possible and in all likelihood a slip."""
     bad = bad_devices(found)
     of_cell = list(plausibility_issues(cell, path.parent, bad))
+    of_cell += table_issues(cell, bad)
+    of_cell += box_issues(cell, stated_bases(path), bad)
     yield from of_cell
     bad |= bad_devices(of_cell)
     # A device or a recipe that is wrong itself would be named a second time, by all that use it.
@@ -73,6 +77,8 @@ def _implausible_recipe(
 
 def _remarks(cell: CellConfig, path: Path) -> Iterator[ConfigIssue]:
     yield from cell_remarks(cell)
+    yield from table_remarks(cell)
+    yield from box_remarks(cell)
     for index, recipe in enumerate(cell.recipes):
         definition = process_definition(recipe.process)
         yield from definition.remarks(cell, recipe, f"recipes.{index}", path.parent)
