@@ -13,6 +13,7 @@ from cellctl.config.checks.arms.boxes import box_issues, box_remarks
 from cellctl.config.checks.arms.tables import table_issues, table_remarks
 from cellctl.config.checks.cross_checks import unpermitted
 from cellctl.config.checks.plausible.findings import plausibility_issues
+from cellctl.config.checks.plausible.mounted import mounted_remarks
 from cellctl.config.checks.remarks import cell_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import bad_devices, examine, placed, unless_named
@@ -77,6 +78,7 @@ def _implausible_recipe(
 
 def _remarks(cell: CellConfig, path: Path) -> Iterator[ConfigIssue]:
     yield from cell_remarks(cell)
+    yield from mounted_remarks(cell)
     yield from table_remarks(cell)
     yield from box_remarks(cell)
     for index, recipe in enumerate(cell.recipes):

@@ -11,7 +11,6 @@ from cellctl.calibration.solvers.base_frame.base_frame import (
     BaseFrameResult,
     calibrate_base_frame,
 )
-from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, TargetTracker
@@ -65,6 +64,9 @@ async def calibrate_base(
     await go_home()
     found = await workers.run_within(SOLVE_S, calibrate_base_frame, a1_stops, a2_stops, arm)
     result = replace(found, reference=reference)
+    # Loaded when it is drawn: checks of a cell file load this module for its moves.
+    from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
+
     return ProcedureOutcome(
         kind=kind,
         record=result.to_record(),

@@ -18,7 +18,6 @@ from cellctl.force.gravity.signs import reaction_check
 from cellctl.geometry.pose import MM, Array
 from cellctl.guard.report import GuardSample, GuardSamples
 from cellctl.interfaces import Robot
-from cellctl.procedures.payload_picture import residual_picture
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
@@ -79,6 +78,9 @@ async def identify_payload_on_cell(
         rigid = result.identification.rigid
         weighed = rigid.mass_kg, rigid.centre_of_mass_m
         result = result.also(weighed_checks(arm.config.load, *weighed, arm.flange_T_sensor))
+    # Loaded when it is drawn: checks of a cell file load this module for its moves.
+    from cellctl.procedures.payload_picture import residual_picture
+
     return ProcedureOutcome(
         kind=kind,
         record=payload_document(result),

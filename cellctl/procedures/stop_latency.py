@@ -20,7 +20,6 @@ from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.contact.commissioning import LatencyEstimate, estimate_stop_latency
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
-from cellctl.procedures.stop_latency_picture import latency_picture
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
@@ -95,6 +94,9 @@ async def measure_stop_latency_on_cell(
     measured = await measure_stop_latency(robot, np.array([0.0, 0.0, 1.0]), safe_point)
     checks = _checks(measured.estimate, bound_ms)
     data = measured.estimate, measured.speeds_m_s, measured.overruns_m
+    # Loaded when it is drawn: checks of a cell file load this module for its moves.
+    from cellctl.procedures.stop_latency_picture import latency_picture
+
     return ProcedureOutcome(
         kind=kind,
         record=_record(measured, checks),

@@ -78,11 +78,13 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         key: str,  # noqa: ARG003 - settings alone
         folder: Path,
     ) -> Iterable[ConfigIssue]:
-        """Another board than that of the stored cameras."""
+        """Another board than that of the stored cameras, and looks beside what was measured."""
         from cellctl.processes.antenna_module.checks.figures import board_remarks
+        from cellctl.processes.antenna_module.checks.looks import look_remarks
 
         settings = cast(AntennaSettings, cell.processes[recipe.process])
-        return board_remarks(cell, settings, f"processes.{recipe.process}", folder)
+        yield from board_remarks(cell, settings, f"processes.{recipe.process}", folder)
+        yield from look_remarks(cell, cast(AntennaRecipe, recipe), folder)
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

@@ -42,7 +42,7 @@ def box_issues(
                 allowed = "a box that bounds the flange; the arm reaches none of its faces"
                 yield ConfigIssue(f"{key}_max_mm", str(upper_mm.tolist()), allowed)
                 continue
-            box = Box.from_mm(lower_mm, upper_mm)
+            box = Box(lower_mm * MM, upper_mm * MM)
             for other in bases.keys() & cell.robots.keys() - {name}:
                 if name in bases and box.meets(_column_m(bases[name], bases[other])):
                     allowed = (

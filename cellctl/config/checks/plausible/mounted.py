@@ -18,6 +18,9 @@ _ALONG = 0.9
 """Least cosine between the axes of a force sensor and its flange, either way: a disc between flange
 and gripper."""
 
+_FLAT_DEG = 2.0
+"""Flanges are machined flat to far less."""
+
 
 def mounted_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
     """Poses on a flange that are farther from it than any tool, cameras that see the arm, force
@@ -54,3 +57,17 @@ def _sensors(cell: CellConfig, far: set[str]) -> Iterator[ConfigIssue]:
                 "flange and gripper; B and C near 0 or 180 deg"
             )
             yield ConfigIssue(key, str(list(sensor.flange_T_sensor)), allowed)
+
+
+def mounted_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Force sensors that do not lie flat on their flange."""
+    for name, sensor in cell.force_sensors.items():
+        axis = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()[:, 2]
+        tilted_deg = float(np.degrees(np.arccos(min(1.0, abs(float(axis[2]))))))
+        if tilted_deg > _FLAT_DEG:
+            said = (
+                f"tilted by {tilted_deg:.0f} deg against the flange: a disc that is bolted on lies "
+                "flat; a weight would be read as a force across"
+            )
+            written = str(list(sensor.flange_T_sensor))
+            yield ConfigIssue(f"force_sensors.{name}.flange_T_sensor", written, said)
