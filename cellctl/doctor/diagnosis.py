@@ -9,6 +9,7 @@ from cellctl.doctor.accounts import account_findings
 from cellctl.doctor.clock import clock_findings
 from cellctl.doctor.devices import device_findings
 from cellctl.doctor.finding import Finding, Health, bad, good
+from cellctl.doctor.fleet_delivery import delivery_findings
 from cellctl.doctor.network import limits_finding, network_findings
 from cellctl.doctor.pc import Pc
 from cellctl.doctor.program import program_findings, unit_findings
@@ -54,6 +55,8 @@ def diagnose(cell_file: Path, pc: Pc | None = None) -> Iterator[Subject]:
     if cell is not None:
         if of_network := tuple(network_findings(pc, cell)):
             yield Subject("Network", of_network)
+        if of_fleet := tuple(delivery_findings(pc, cell)):
+            yield Subject("Fleet", of_fleet)
         if service is not None:
             limits = limits_finding(pc, cell, str(cell_file))
             yield Subject("Devices", (limits, *device_findings(pc, service, cell)))

@@ -5,9 +5,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from cellctl import log
+from cellctl.clock import utc_now
 from cellctl.errors.base import CellError
 from cellctl.errors.records import FleetUnreachable, RecordsError, StoreTooNew
 from cellctl.fleet.delivery import Delivery
+from cellctl.records.files.delivery_file import DeliveryState
 
 _log = log.get(__name__)
 
@@ -37,11 +39,14 @@ class Forwarder:
         delivery: Delivery,
         pace: ForwarderPace = PACE,
         wait: Callable[[float], None] = time.sleep,
+        tell: Callable[[DeliveryState], None] = lambda _state: None,
     ) -> None:
+        """``tell`` is given the state after each turn; it must not raise."""
         self._delivery = delivery
         self._pace = pace
         self._wait = wait
-        self._fault = ""
+        self._tell = tell
+        self._state = DeliveryState(told=utc_now(), delivered=None, still_to_come=None)
         self._failures = 0
 
     def run(self, until: Callable[[], bool] = lambda: False) -> None:
@@ -50,7 +55,9 @@ class Forwarder:
         Raises ``StoreTooNew`` when cellctl was upgraded below it: it has to be started anew.
         """
         while not until():
-            self._wait(self._once())
+            pause_s = self._once()
+            self._tell(self._state)
+            self._wait(pause_s)
 
     def _once(self) -> float:
         """One batch, or the reason why not; how long to wait."""
@@ -60,18 +67,20 @@ class Forwarder:
             raise
         except RecordsError as fault:
             return self._failed(fault)
-        if self._fault:
+        if self._state.fault:
             _log.info("records are delivered again", still_to_come=left)
-            self._fault = ""
+        now = utc_now()
+        self._state = DeliveryState(told=now, delivered=now, still_to_come=left)
         self._failures = 0
         return 0.0 if left else self._pace.look_s
 
     def _failed(self, fault: CellError) -> float:
         self._failures += 1
-        if str(fault) != self._fault:
+        if str(fault) != self._state.fault:
             # Said once, and again when the reason is another one: a server may be away for weeks.
             write = _log.warning if isinstance(fault, FleetUnreachable) else _log.error
             write("records are not delivered", fault=str(fault), remedy=fault.remedy)
-            self._fault = str(fault)
+        changes = {"told": utc_now(), "fault": str(fault), "remedy": fault.remedy}
+        self._state = self._state.model_copy(update=changes)
         doubled = self._pace.retry_s * 2.0 ** min(self._failures - 1, 16)
         return min(doubled, self._pace.retry_most_s)

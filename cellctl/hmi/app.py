@@ -64,7 +64,7 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
         exporter=RunExporter(data_dir),
         commands=RateLimit(COMMANDS_A_MINUTE, 60.0),
         sign_ins=RateLimit(SIGN_INS_A_MINUTE, 60.0),
-        metrics=MetricsKeeper(hub, streams, data_dir),
+        metrics=MetricsKeeper(hub, streams, data_dir, Path(settings.forwarder_dir)),
     )
 
     @asynccontextmanager

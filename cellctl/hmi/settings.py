@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from cellctl.api.local_socket.messages import Role
 from cellctl.errors.local import PageSettingsWrong
 from cellctl.hmi.notifying.events import Event
+from cellctl.records.files.delivery_file import FOLDER
 
 Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,32}$")]
 LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
@@ -73,6 +74,8 @@ class PageSettings(SettingsTable):
     """The daemon's socket."""
     data_dir: str = "/var/lib/cellctl"
     """The run store, which is only read."""
+    forwarder_dir: str = str(FOLDER)
+    """Where a forwarder of records tells how the delivery goes."""
     host: str = "127.0.0.1"
     port: Annotated[int, Field(ge=0, le=65535)] = 8080
     hosts: tuple[str, ...] = ()

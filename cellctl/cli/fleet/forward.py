@@ -1,8 +1,10 @@
 """`cellctl fleet forward`: the program that delivers the records of a cell."""
 
+import os
+from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -11,6 +13,11 @@ from cellctl.cli.fleet.store_option import opened_fleet
 from cellctl.config.load import load_cell
 from cellctl.errors.records import FleetNotNamed
 from cellctl.version import software
+
+if TYPE_CHECKING:
+    from cellctl.records.files.delivery_file import DeliveryState
+
+_log = log.get(__name__)
 
 
 def forward(
@@ -42,9 +49,26 @@ def forward(
         delivery = Delivery(cell.name, records, fleet, software())
         if not once:
             try:
-                Forwarder(delivery).run()
+                Forwarder(delivery, tell=_told()).run()
             except KeyboardInterrupt:
                 raise typer.Exit(0) from None
         while delivery.deliver():
             pass
         typer.echo(f"all {records.length()} entries of the ledger are delivered")
+
+
+def _told() -> Callable[["DeliveryState"], None]:
+    """Writes into the folder that systemd made for the unit; elsewhere nobody would look for it."""
+    from cellctl.records.files.delivery_file import write_state
+
+    folder = os.environ.get("RUNTIME_DIRECTORY", "")
+
+    def tell(state: "DeliveryState") -> None:
+        try:
+            if folder:
+                write_state(Path(folder), state)
+        except OSError as error:
+            # Records matter more than what is told of them.
+            _log.warning("the state of the delivery is not told", folder=folder, reason=str(error))
+
+    return tell

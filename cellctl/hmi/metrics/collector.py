@@ -9,10 +9,12 @@ from typing import Any
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
 from prometheus_client.registry import Collector
 
+from cellctl.clock import utc_now
 from cellctl.hmi.hub import Hub
 from cellctl.hmi.metrics import table
 from cellctl.packml.state import STATES
 from cellctl.records.database.schema_version import FILE
+from cellctl.records.files.delivery_file import NAME, read_state
 from cellctl.version import software
 
 Sample = tuple[tuple[str, ...], float]
@@ -25,10 +27,16 @@ _REACTIONS = ("warn", "hold", "stop", "abort")
 class SnapshotCollector(Collector):
     """Asked by the registry for each answer."""
 
-    def __init__(self, hub: Hub, clients: Callable[[], int], data_dir: Path) -> None:
+    def __init__(
+        self,
+        hub: Hub,
+        clients: Callable[[], int],
+        data_dir: Path,
+        forwarder_dir: Path,
+    ) -> None:
         self._hub = hub
         self._clients = clients
-        self._data_dir = data_dir
+        self._data_dir, self._forwarder_dir = data_dir, forwarder_dir
 
     def collect(self) -> Iterator[Metric]:
         """All gauges; those of the cell only while what it says is fresh."""
@@ -38,6 +46,7 @@ class SnapshotCollector(Collector):
         yield _family(table.SNAPSHOT_AGE, _one(age_s))
         yield _family(table.CLIENTS, _one(float(self._clients())))
         yield from _store(self._data_dir)
+        yield from _delivery(self._forwarder_dir)
         if age_s is not None and age_s <= _FRESH_S:
             yield from _unit(hub.snapshot)
             yield from _figures(hub.snapshot)
@@ -147,6 +156,20 @@ def _store(data_dir: Path) -> Iterator[Metric]:
         return  # a store that is away has no size, and the other figures are wanted all the same
     yield _family(table.STORE_BYTES, _one(used))
     yield _family(table.DISK_FREE, _one(free))
+
+
+def _delivery(forwarder_dir: Path) -> Iterator[Metric]:
+    try:
+        state = read_state((forwarder_dir / NAME).read_text("utf-8"))
+    except OSError:
+        return  # no forwarder on this PC, as for a cell that belongs to no fleet
+    if state is None:
+        return
+    delivered = None if state.delivered is None else state.delivered.timestamp()
+    yield _family(table.FLEET_WAITING, _one(state.still_to_come))
+    yield _family(table.FLEET_DELIVERED, _one(delivered))
+    failing = bool(state.fault) or state.silent(utc_now())
+    yield _family(table.FLEET_FAILING, _one(float(failing)))
 
 
 def _one(value: float | None) -> list[Sample]:

@@ -17,13 +17,15 @@ _log = log.get(__name__)
 class MetricsKeeper:
     """Has a registry of its own: that of the library has figures of this process beside them."""
 
-    def __init__(self, hub: Hub, streams: Streams, data_dir: Path) -> None:
+    def __init__(self, hub: Hub, streams: Streams, data_dir: Path, forwarder_dir: Path) -> None:
         # Else each counter would have a second series with the time of its begin.
         disable_created_metrics()  # type: ignore[no-untyped-call]  # of the library
         self._hub = hub
         self._registry = CollectorRegistry()
         self._history = CellHistory(self._registry)
-        self._registry.register(SnapshotCollector(hub, lambda: streams.count, data_dir))
+        self._registry.register(
+            SnapshotCollector(hub, lambda: streams.count, data_dir, forwarder_dir)
+        )
 
     async def run(self) -> None:
         """Count until cancelled."""

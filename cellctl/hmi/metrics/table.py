@@ -81,6 +81,15 @@ SNAPSHOT_AGE = _gauge("hmi_snapshot_age_seconds", "s", "age of what the daemon h
 CLIENTS = _gauge("hmi_clients", "", "pages that are open")
 STORE_BYTES = _gauge("store_bytes", "B", "database of the run store, without its files")
 DISK_FREE = _gauge("store_disk_free_bytes", "B", "free on the disk of the run store")
+FLEET_WAITING = _gauge(
+    "fleet_entries_waiting", "", "entries of the ledger that the fleet database does not have yet"
+)
+FLEET_DELIVERED = _gauge(
+    "fleet_delivered_timestamp_seconds", "s since 1970", "when records were delivered last"
+)
+FLEET_FAILING = _gauge(
+    "fleet_delivery_failing", "", "1 while the forwarder delivers nothing, or is silent"
+)
 BUILD_INFO = _gauge("build_info", "", "1, with version and SIMULATED", "version", "simulated")
 
 METRICS = (
@@ -88,7 +97,7 @@ METRICS = (
     FIGURE, LIMIT_RATIO, FORCE, MOMENT, FORCE_PEAK, FORCE_LIMIT, GUARD_TRIPPED, SAMPLE_AGE,
     GUARD_LATE, FLANGE_AGE, LINE_BEAT_AGE, LOOP_LATE, DAEMON_BYTES, LINK_UP, CALIBRATION_EXPIRY,
     CALIBRATION_OK, ALARMS_ACTIVE, ALARMS, DAEMON_LINKED, SNAPSHOT_AGE, CLIENTS, STORE_BYTES,
-    DISK_FREE, BUILD_INFO,
+    DISK_FREE, FLEET_WAITING, FLEET_DELIVERED, FLEET_FAILING, BUILD_INFO,
 )  # fmt: skip
 
 

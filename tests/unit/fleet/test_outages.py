@@ -22,6 +22,7 @@ from cellctl.fleet.database import FleetDatabase, FleetTimeLimits
 from cellctl.fleet.delivery import Delivery
 from cellctl.fleet.forwarder import Forwarder, ForwarderPace
 from cellctl.records import RunStore
+from cellctl.records.files.delivery_file import DeliveryState
 from tests.rigs.postgres import PASSWORD
 from tests.unit.fleet.conftest import NORTH, Fleet, deliver_all
 from tests.unit.fleet.test_delivery import assert_whole, everything
@@ -229,9 +230,16 @@ def test_the_forwarder_says_an_outage_once_and_waits_longer_and_longer(
         if len(waits) == 4:
             fleet.server.start()
 
-    forwarder = Forwarder(fleet.delivery(NORTH), ForwarderPace(2.0, 1.0, 3.0), wait)
+    told: list[DeliveryState] = []
+    pace = ForwarderPace(2.0, 1.0, 3.0)
+    forwarder = Forwarder(fleet.delivery(NORTH), pace, wait, told.append)
     forwarder.run(until=lambda: len(waits) >= 6)
     assert waits == [1.0, 2.0, 3.0, 3.0, 2.0, 2.0]
+    away, back = told[:4], told[4:]
+    assert all(state.fault.startswith("F831") and state.remedy for state in away)
+    assert {state.still_to_come for state in away} == {None}
+    assert [(state.fault, state.still_to_come) for state in back] == [("", 0), ("", 0)]
+    assert back[-1].delivered is not None
     assert_whole(fleet, NORTH, store)
 
 

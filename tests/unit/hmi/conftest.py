@@ -63,6 +63,7 @@ def settings(tmp_path: Path, secret: str) -> Path:
     ]
     file = tmp_path / "hmi.toml"
     head = f'socket = "{tmp_path}/s"\ndata_dir = "{tmp_path}/store"\nport = 0\n'
+    head += f'forwarder_dir = "{tmp_path}/forwarder"\n'
     file.write_text(f'{head}hosts = ["cell.example"]\n' + "".join(people + tokens))
     return file
 

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +10,10 @@ import pytest
 from prometheus_client import CollectorRegistry, generate_latest
 from prometheus_client.parser import text_string_to_metric_families
 
+from cellctl.clock import utc_now
 from cellctl.hmi.metrics.history import CellHistory
 from cellctl.hmi.metrics.table import METRICS, metrics_table
+from cellctl.records.files.delivery_file import NAME, DeliveryState, write_state
 from tests.unit.hmi.conftest import TOKEN
 from tests.unit.hmi.http_client import Client
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
@@ -101,10 +103,12 @@ def test_who_may_read_them(page: Client) -> None:
 
 
 def test_every_metric_is_in_the_table_and_every_row_is_served(
-    page: Client, paper: PaperDaemon
+    page: Client, paper: PaperDaemon, settings: Path
 ) -> None:
     wrench = [{"axis": "Fx", "unit": "N", "value": 1.0, "limit": None},
               {"axis": "Mx", "unit": "N·m", "value": 0.1, "limit": None}]  # fmt: skip
+    delivered = DeliveryState(told=utc_now(), delivered=utc_now(), still_to_come=0)
+    write_state(settings.parent / "forwarder", delivered)
     force = snapshot()["forces"][0] | {"wrench": wrench, "peaks": [3.0] * 6}
     errors = [{"axis": "x", "unit": "mm", "value": 0.1, "limit": 0.2}]
     paper.snapshot = snapshot(forces=[force], errors=errors)
@@ -124,6 +128,23 @@ def test_every_metric_is_in_the_table_and_every_row_is_served(
         labels = {name for sample in family.samples for name in sample.labels} - {"le"}
         assert labels == set(metric.labels), metric.name
     assert not families
+
+
+def test_a_delivery_that_fails_or_falls_silent_is_told(page: Client, settings: Path) -> None:
+    assert value(asked(page), "fleet_delivery_failing") is None, "this cell has no forwarder"
+    state = DeliveryState(told=utc_now(), delivered=None, still_to_come=12, fault="F831 away")
+    for told, failing in (
+        (state, 1.0),
+        (state.model_copy(update={"fault": ""}), 0.0),
+        (state.model_copy(update={"fault": "", "told": utc_now() - timedelta(hours=1)}), 1.0),
+    ):
+        write_state(settings.parent / "forwarder", told)
+        found = asked(page)
+        assert value(found, "fleet_entries_waiting") == 12.0
+        assert value(found, "fleet_delivered_timestamp_seconds") is None
+        assert value(found, "fleet_delivery_failing") == failing
+    (settings.parent / "forwarder" / NAME).write_text("{", encoding="utf-8")
+    assert value(asked(page), "fleet_entries_waiting") is None
 
 
 def test_the_page_of_metrics_is_current() -> None:
