@@ -5,7 +5,7 @@ from pathlib import Path
 
 from cellctl.clock import utc_now
 from cellctl.config import load_cell
-from cellctl.config.cell import CellConfig, Fleet
+from cellctl.config.cell import CellConfig, FleetConfig
 from cellctl.doctor.finding import Finding, Health
 from cellctl.doctor.fleet_delivery import delivery_findings
 from cellctl.doctor.pc import Pc
@@ -16,7 +16,7 @@ WELL = DeliveryState(told=utc_now(), delivered=utc_now(), still_to_come=0)
 
 
 def fleet_cell(folder: Path) -> CellConfig:
-    fleet = Fleet(url="postgresql://north@db/fleet", password_file=str(folder / "password"))
+    fleet = FleetConfig(url="postgresql://north@db/fleet", password_file=str(folder / "password"))
     return load_cell(CELL_FILE).model_copy(update={"fleet": fleet})
 
 
