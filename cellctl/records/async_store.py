@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import Concatenate, ParamSpec, TypeVar
 
 from cellctl import log
-from cellctl.errors.records import RecordNotWritten, RecordsError
+from cellctl.clock import now_s
+from cellctl.errors.records import RecordNotWritten, RecordsError, StoreLocked
 from cellctl.records.database.sessions import LOCK_WAIT_S
 from cellctl.records.files.raw_images import (
     MEDIA_TYPE,
@@ -64,6 +65,27 @@ class AsyncRunStore:
 
         loop = asyncio.get_running_loop()
         return await asyncio.shield(loop.run_in_executor(self._thread, work))
+
+    async def insist(
+        self,
+        patience_s: float,
+        call: Callable[Concatenate[RunStore, P], R],
+        *args: P.args,
+        **kwargs: P.kwargs,
+    ) -> R:
+        """As ``do``, and again while another program keeps the store locked, for so long.
+
+        Raises ``StoreLocked`` after that. For what nothing else can take the place of.
+        """
+        give_up_s = now_s() + patience_s
+        while True:
+            try:
+                return await self.do(call, *args, **kwargs)
+            except StoreLocked as fault:
+                # Each try has waited for the lock itself, so there is no need of a pause.
+                if now_s() >= give_up_s:
+                    raise
+                _log.warning("run store is locked", call=call.__name__, fault=str(fault))
 
     def keep_image(self, run: int, name: str, image: GreyImage) -> None:
         """Keep an image, shape (height, width), as a file of a run, whenever there is time.

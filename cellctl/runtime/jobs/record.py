@@ -27,6 +27,11 @@ MAINTENANCE = "maintenance"
 """Mode of the runs of procedures, and their process: a procedure may belong to several."""
 
 
+CLOSE_PATIENCE_S = 120.0
+"""A run that is not closed counts as interrupted after the next start, also one that made a good
+part. Nothing moves meanwhile, so a backup that holds the store for a minute is waited for."""
+
+
 class JobRecord:
     """Opens and closes the record of one job; a job has at most one."""
 
@@ -77,7 +82,8 @@ class JobRecord:
         # Images are written in the background and belong to the seal, which covers every file of
         # the run at its closing.
         await self.store.images_kept()
-        await self.store.do(
+        await self.store.insist(
+            CLOSE_PATIENCE_S,
             RunStore.close_run,
             self.number,
             outcome,

@@ -8,6 +8,7 @@ from pathlib import Path
 from shutil import copytree
 
 import pytest
+from structlog.testing import capture_logs
 
 from cellctl.errors.records import StoreLocked
 from cellctl.records import RunResult, RunStore
@@ -52,6 +53,26 @@ async def test_a_lock_keeps_no_further_run_from_starting(
     assert archive.fault is None
     other_writer.rollback()
     await archive.do(RunStore.note_line_seq, 8)
+    archive.close()
+
+
+async def test_what_has_to_be_written_outlasts_the_lock(
+    tmp_path: Path, other_writer: sqlite3.Connection
+) -> None:
+    archive = AsyncRunStore(tmp_path, lock_wait_s=SHORT_S)
+    run = await archive.do(start)
+    other_writer.execute("BEGIN IMMEDIATE")
+    with capture_logs() as lines:
+        close = asyncio.create_task(archive.insist(60.0, RunStore.close_run, run, RunResult.GOOD))
+        while len(lines) < 2:  # as often as it was tried in vain
+            await asyncio.wait({close}, timeout=SHORT_S)
+        other_writer.rollback()
+        await close
+    assert (await archive.do(RunStore.run, run)).head.result == "good"
+    other_writer.execute("BEGIN IMMEDIATE")
+    with pytest.raises(StoreLocked):
+        await archive.insist(SHORT_S / 2, RunStore.note_line_seq, 7)
+    other_writer.rollback()
     archive.close()
 
 
