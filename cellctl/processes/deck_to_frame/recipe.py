@@ -120,7 +120,8 @@ class Mating(Section):
     """Upper bound, used while procedure 107 has no valid result; 107 does not pass beyond it."""
     stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)]
     """Robot and joint in series: upper bound, used while procedure 108 has no valid result for
-    this recipe; 108 does not pass beyond it. The robot's own stiffness is a safe choice."""
+    this recipe; 108 does not pass beyond it. The robot's own stiffness is a safe choice. With
+    ``pins`` it is the choice: they are approached by this figure, whatever 108 has measured."""
     travel_sigma_mm: Annotated[float, Field(gt=0, le=1)]
     """What the arm is off after a straight move over the stand-off distance: from its data sheet or
     from a measurement with a tracker; standard deviation."""

@@ -89,8 +89,8 @@ def plan_mating(
         raise ContactPlanInvalid("targets may not lie further past contact than D3")
     figures = ApproachFigures(
         stop_latency_s=settings.stop_latency_s,
-        stiffness_n_m=settings.stiffness_n_m,
-        contact_stiffness_n_m=settings.contact_stiffness_n_m,
+        stiffness_n_m=settings.approach_stiffness_n_m,
+        contact_stiffness_n_m=settings.approach_contact_stiffness_n_m,
         moving_mass_kg=settings.moving_mass_kg,
         deceleration_m_s2=settings.deceleration_m_s2,
         stale_s=settings.stale_s,

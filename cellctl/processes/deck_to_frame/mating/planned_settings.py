@@ -69,6 +69,9 @@ def _pin_settings(mating: Mating, pins: Pins) -> PinSettings:
     return PinSettings(
         **searched,
         engagement_m=pins.engagement_mm * MM,
+        # The bound of the recipe, whatever procedure 108 has measured: it presses the seat, and
+        # a seat may be far softer than the pins above it.
+        stiffness_n_m=mating.stiffness_n_per_mm / MM,
         compliant=pins.compliance,
         greatest_travel_m=pins.max_travel_mm * MM,
         greatest_yaw_rad=math.radians(pins.max_yaw_deg),

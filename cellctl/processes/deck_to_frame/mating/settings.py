@@ -17,6 +17,11 @@ class PinSettings:
 
     engagement_m: float
     """They are met so far above the seat."""
+    stiffness_n_m: float = 1e6
+    """Upper bound along the approach, arm and pins in series: the arm's own. What was measured at
+    the seat says nothing about a pin."""
+    contact_stiffness_n_m: float = 4e7
+    """Of the pins alone, upper bound: two of steel that the deck meets at once."""
     compliant: bool = True
     """Give way to them; else they are only approached slowly."""
     greatest_travel_m: float = 2e-4
@@ -130,6 +135,18 @@ class MatingSettings:
     back_off_speed_m_s: float = 1e-3
     stand_off_tolerance: tuple[float, float] = (2e-4, float(np.deg2rad(0.02)))
     """Distance (m) and angle (rad) the robot may be away from the planned stand-off."""
+
+    @property
+    def approach_stiffness_n_m(self) -> float:
+        """Arm in series with what the slow travel may meet, upper bound: pins come before the
+        seat."""
+        return max(self.stiffness_n_m, self.pins.stiffness_n_m if self.pins else 0.0)
+
+    @property
+    def approach_contact_stiffness_n_m(self) -> float:
+        """The same without the arm, for the impact."""
+        pins_n_m = self.pins.contact_stiffness_n_m if self.pins else 0.0
+        return max(self.contact_stiffness_n_m, pins_n_m)
 
     @property
     def touch_peak_n(self) -> float:

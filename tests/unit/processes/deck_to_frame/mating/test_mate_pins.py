@@ -67,6 +67,17 @@ def test_pins_that_stand_on_the_deck_are_a_fault_without_a_search_and_found_with
     assert 1 <= places_tried <= len(places(SEARCHED))
 
 
+@pytest.mark.long
+def test_pins_under_a_soft_seat_are_met_as_gently_as_under_a_hard_one() -> None:
+    """A plan for the seat alone would go on for 250 ms at 0.3 mm/s, and press 80 N."""
+    left = np.array([(PINS.clearance_mm + PINS.chamfer_mm + 0.1) * MM, 0.0, 0.0, 0.0, 0.0, 0.0])
+    trial = Trial("pins", 11, stiffness_n_m=1e5, stop_latency_ms=250.0)
+    special = {"pins": PINS, "left": left}
+    run_trial(trial, special=special, pins=PinSettings(ENGAGED_M), stiffness_n_m=1.4e5)
+    assert trial.outcome == "F522"
+    assert trial.true_peak_n < 50.0
+
+
 def test_the_places_of_a_search_leave_no_gap_and_stay_within_its_radius() -> None:
     pins = PinSettings(ENGAGED_M, search_radius_m=0.15 * MM, catch_m=0.05 * MM)
     tried = np.array([(0.0, 0.0), *places(pins)])

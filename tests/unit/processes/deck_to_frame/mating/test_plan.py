@@ -16,7 +16,7 @@ from cellctl.processes.deck_to_frame.mating.limits import (
     travel_limits,
 )
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan, plan_mating
-from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
+from cellctl.processes.deck_to_frame.mating.settings import MatingSettings, PinSettings
 
 SETTINGS = MatingSettings(stop_latency_s=0.26, stiffness_n_m=7.6e5)
 STAND_OFF = pose_from_xyzabc([1900.0, 0.0, 927.0, 90.0, 0.0, 180.0])
@@ -60,6 +60,20 @@ def test_travel_and_pose_are_inverse_of_each_other() -> None:
     lowered = found.pose_at(0.01) * FLANGE_T_DECK
     deck = STAND_OFF * FLANGE_T_DECK
     np.testing.assert_allclose(deck.inv().apply(lowered.translation), [0, 0, -0.01], atol=1e-12)
+
+
+def test_pins_are_approached_by_the_bound_of_the_arm_however_soft_the_seat_was_measured() -> None:
+    soft = replace(SETTINGS, stiffness_n_m=1.4e5)
+    pins = PinSettings(engagement_m=1.3e-3)
+    seat, found = plan(soft), plan(replace(soft, pins=pins))
+    figures = found.speed.figures
+    assert figures.stiffness_n_m == pins.stiffness_n_m > 5.0 * soft.stiffness_n_m
+    assert figures.contact_stiffness_n_m == pins.contact_stiffness_n_m
+    assert found.speed.speed_m_s < 0.5 * seat.speed.speed_m_s
+    overrun_m = found.segment_m + 3.0 * soft.step_sigma_m
+    unstopped_n = soft.touch.drift_n + soft.tare_uncertainty_n + pins.stiffness_n_m * overrun_m
+    assert unstopped_n <= soft.abort_force_n + 1e-9
+    assert found.creep == seat.creep, "the creep presses the seat and no pin"
 
 
 def test_a_deck_that_is_known_badly_is_not_mated() -> None:
