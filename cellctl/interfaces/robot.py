@@ -114,6 +114,13 @@ class Robot(Device):
         it."""
         return None
 
+    @classmethod
+    def published_reach_m(cls, config: Any) -> float | None:  # noqa: ARG003
+        """From A1 to the middle of the wrist of the stretched arm, by its maker's data, in m; None
+        where the settings name no model that the driver knows. `cellctl check` holds the table of
+        links against it."""
+        return None
+
     @abstractmethod
     async def disconnect(self) -> None:
         """Stop a running motion and drop the link. May be called in any state, twice too."""

@@ -219,4 +219,25 @@ _DRAWINGS = (
     ),
 )
 
-SINGLE_FIGURES = _DECK + _FORCES + _LOOP + _FIT + _PLUGGING + _PLACES + _DRAWINGS
+_IN_LISTS = (
+    _antenna(
+        "shift_mm = [18.0, 6.0]",
+        "shift_mm = [18.0, 60.0]",
+        f"{_PLUG}.shift_mm",
+        "corners of the board would leave the picture of the stored camera_1",
+    ),
+    _antenna(
+        "flange_T_marks = [0.0, 0.0, 200.0,",
+        "flange_T_marks = [0.0, 0.0, -200.0,",
+        "recipes.0.flange_T_marks",
+        "within 100 mm of the plug",
+    ),
+    _antenna(
+        "reference_look = [16.15861,",
+        "reference_look = [-16.15861,",
+        "robots.arm.poses_deg.reference_look",
+        "over the place that the recipe gives",
+    ),
+)
+
+SINGLE_FIGURES = _IN_LISTS + _DECK + _FORCES + _LOOP + _FIT + _PLUGGING + _PLACES + _DRAWINGS

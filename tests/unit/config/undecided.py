@@ -189,6 +189,36 @@ UNDECIDED = (
         deck('data_dir = "runs/cell"', 'data_dir = "demo-calibration"', "data_dir", ""),
         "one folder for runs and calibrations: their files have different names",
     ),
+    Undecided(
+        Mistake(
+            "antenna.toml",
+            "inspect_plug = [11.30993,",
+            "inspect_plug = [-11.30993,",
+            "robots.arm.poses_deg.inspect_plug",
+            "by the stored base_T_cam2 not over the place that was measured",
+        ),
+        "the plug beside where camera II was measured: the camera may have been moved since",
+    ),
+    Undecided(
+        Mistake(
+            "antenna.toml",
+            "flange_T_camera = [110.0, 0.0, -50.0,",
+            "flange_T_camera = [110.0, 0.0, 50.0,",
+            "cameras.camera_1.flange_T_camera",
+            "100 mm and 0 deg away from where the stored flange_T_cam1 has this camera",
+        ),
+        "camera I beside where it was measured: it may be mounted otherwise now",
+    ),
+    Undecided(
+        Mistake(
+            "antenna.toml",
+            "base_T_plate = { pose = [500.0,",
+            "base_T_plate = { pose = [510.0,",
+            "processes.antenna-module.reference.base_T_plate.pose",
+            "where the stored reference has the plate",
+        ),
+        "the plate beside where it was measured: it may have been moved since",
+    ),
 )
 """``said`` of a mistake is part of the remark that `cellctl check` makes, where it makes one.
 

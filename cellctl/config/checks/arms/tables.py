@@ -23,6 +23,8 @@ _OFFSET_MM = 3.0
 """Calibrated tables have less than this where the drawing has nothing."""
 _ROLLING_WRIST = (90.0, 0.0, 90.0, 90.0, 90.0, 0.0)
 """Twists, without their signs, of an arm whose forearm turns about itself."""
+_REACH_SHARE = 0.02
+"""Published reaches of one arm differ from list to list by up to 1.5 %."""
 _BESIDE = ((3, 2), (4, 1), (4, 2), (5, 2))
 """Rows and columns of the lengths that move its last three axes out of one point."""
 _COLUMNS = ("offset", "d", "a", "alpha")
@@ -62,6 +64,7 @@ def table_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
     chains = described_arms(cell, frozenset())
     for name, chain in chains.items():
         yield from _unusual(name, chain.dh)
+        yield from _reach(cell, name, chain.dh)
     for (name, one), (other, two) in combinations(chains.items(), 2):
         if _different(one.dh, two.dh) == [_FLANGE]:
             said = f"otherwise the table of robots.{name}; right if this flange has an adapter"
@@ -81,7 +84,7 @@ def described_arms(cell: CellConfig, bad: Set[str]) -> dict[str, ArmChain]:
 
 
 def _unusual(name: str, dh: Array) -> Iterator[ConfigIssue]:
-    if np.max(np.abs(np.abs(np.degrees(dh[:, 3])) - _ROLLING_WRIST)) > _OFF_DEG:
+    if not _has_rolling_wrist(dh):
         return  # an arm of another make, such as a collaborative one with its wrist beside itself
     for row, column in _BESIDE:
         if abs(dh[row, column]) > _OFFSET_MM * MM:
@@ -96,10 +99,34 @@ def _unusual(name: str, dh: Array) -> Iterator[ConfigIssue]:
         yield ConfigIssue(_key(name), f"d of A2 and A3: {beside_m / MM:g} mm", said)
 
 
+def _reach(cell: CellConfig, name: str, dh: Array) -> Iterator[ConfigIssue]:
+    """A table whose stretched arm is longer or shorter than its maker's."""
+    driver, settings = robot_driver(cell.robots[name])
+    published_m = driver.published_reach_m(settings)
+    if published_m is None or not _has_rolling_wrist(dh):
+        return
+    reach_m = float(abs(dh[0, 2]) + abs(dh[1, 2]) + np.hypot(dh[2, 2], dh[3, 1]))
+    if abs(reach_m - published_m) > _REACH_SHARE * published_m:
+        said = (
+            f"from A1 to the wrist this arm would reach {reach_m / MM:.0f} mm, and arms of this "
+            f"model {published_m / MM:.0f} mm: the table of another arm, or another model"
+        )
+        value = f"a of A1 to A3, d of A4: {reach_m / MM:.0f} mm together"
+        yield ConfigIssue(_key(name), value, said)
+
+
+def _has_rolling_wrist(dh: Array) -> bool:
+    twists_deg = np.abs(np.degrees(dh[:, 3]))
+    return bool(np.max(np.abs(twists_deg - _ROLLING_WRIST)) <= _OFF_DEG)
+
+
 def _different(one: Array, two: Array) -> list[tuple[int, int]]:
     """Rows and columns of the figures in which two tables differ."""
+    between = one - two
+    turns = between[:, [0, 3]]
+    between[:, [0, 3]] = np.arctan2(np.sin(turns), np.cos(turns))
     same = np.array([np.radians(_SAME_DEG), _SAME_MM * MM, _SAME_MM * MM, np.radians(_SAME_DEG)])
-    return [(int(row), int(column)) for row, column in np.argwhere(np.abs(one - two) > same)]
+    return [(int(row), int(column)) for row, column in np.argwhere(np.abs(between) > same)]
 
 
 def _key(name: str) -> str:

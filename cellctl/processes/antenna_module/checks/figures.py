@@ -4,7 +4,7 @@ The plan predicts from these figures how far the worst contact may be off: an ar
 better than it is lets a plug be pushed in that does not fit.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import degrees
 from pathlib import Path
 
@@ -76,6 +76,18 @@ def board_bounds(
         )
         why = f"the board would not fit into the picture of the stored {name} at board_distance_mm"
         yield Bound(key, square_mm, why, most=most_mm)
+        yield from _shift_bounds(settings, where, name, record["image_size"], px_per_mm)
+
+
+def _shift_bounds(
+    settings: AntennaSettings, where: str, name: str, image_px: Sequence[int], px_per_mm: float
+) -> Iterator[Bound]:
+    """Boards whose corners would leave the picture, even without a turn."""
+    sides = [int(side) for side in settings.board.split("x")]
+    for shift_mm, side, side_px in zip(settings.shift_mm, sides, image_px, strict=True):
+        most_mm = (side_px / px_per_mm - (side - 1) * settings.square_mm) / 2.0
+        why = f"corners of the board would leave the picture of the stored {name}"
+        yield Bound(f"{where}.shift_mm", shift_mm, why, most=max(most_mm, 0.0))
 
 
 def board_remarks(

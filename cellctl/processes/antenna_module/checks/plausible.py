@@ -1,6 +1,7 @@
 """Places of an antenna recipe that the arm cannot come to, and figures that no arm has."""
 
 from collections.abc import Iterator
+from math import dist
 from pathlib import Path
 from typing import cast
 
@@ -8,7 +9,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import bound_issues
 from cellctl.config.checks.flange_places import flange_place_issues
 from cellctl.config.checks.sensor_places import sensor_bounds
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.checks.drawn import contact_bounds, one_file_twice
 from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds
@@ -16,6 +17,9 @@ from cellctl.processes.antenna_module.checks.looks import OVER, look_issues
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ARM, FORCE
 from cellctl.processes.antenna_module.settings import AntennaSettings
+
+_MARKS_MM = 100.0
+"""Marks and plug lie in one picture of camera II, within its depth of field."""
 
 
 def plausible_issues(
@@ -29,10 +33,24 @@ def plausible_issues(
     yield from bound_issues(arm_bounds(cell, arm, settings, where))
     yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_plug))
     yield from bound_issues(board_bounds(cell, settings, where, folder))
+    yield from _marks(recipe, key)
     places = list(_places(cell, recipe, key))
     yield from places
     if not places:
         yield from look_issues(cell, recipe, key)
+
+
+def _marks(recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
+    """Marks of the gripper that no picture of the plug would show."""
+    marks, plug = recipe.flange_T_marks, recipe.flange_T_plug
+    away_mm = dist(marks[:3], plug[:3])
+    if away_mm > _MARKS_MM:
+        allowed = (
+            f"within {_MARKS_MM:g} mm of the plug, with which the marks lie in one picture; this "
+            f"is {away_mm:.0f} mm away"
+        )
+        against = (WrittenValue(f"{key}.flange_T_plug", str(list(plug))),)
+        yield ConfigIssue(f"{key}.flange_T_marks", str(list(marks)), allowed, against=against)
 
 
 def _places(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:

@@ -84,9 +84,21 @@ def test_two_arms_whose_tables_differ_in_one_figure_contradict_each_other(tmp_pa
     assert "robots.aux_1.settings.dh = a of A2: 1140 mm" in errors[0]
 
 
+def test_one_angle_written_twice_is_no_difference(tmp_path: Path) -> None:
+    remarks = said_of(tmp_path, DECK, "[180.0, 240.0, 0.0, 0.0]", "[-180.0, 240.0, 0.0, 0.0]")
+    assert not any("settings.dh" in one for one in remarks)
+
+
 def test_a_longer_flange_is_remarked_on_for_it_may_have_an_adapter(tmp_path: Path) -> None:
     remarks = said_of(tmp_path, DECK, "[180.0, 240.0, 0.0, 0.0]", "[180.0, 245.0, 0.0, 0.0]")
     assert any("right if this flange has an adapter" in one for one in remarks)
+
+
+def test_a_table_is_held_against_the_published_reach_of_the_model(tmp_path: Path) -> None:
+    path = written(tmp_path / "cell", DECK)
+    path.write_text(path.read_text().replace('"SR500A"', '"SR210A"'))
+    remarks = [str(one) for one in examine_before_commissioning(path).remarks]
+    assert any("would reach 2826 mm, and arms of this model 2650 mm" in one for one in remarks)
 
 
 def test_room_is_measured_to_the_outermost_places(tmp_path: Path) -> None:
