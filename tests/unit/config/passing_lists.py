@@ -189,11 +189,24 @@ LISTS = (
         remarked=True,
     ),
     Kind(
+        "a load that differs from the one that was weighed",
+        _at("robots.main.load.com_mm", "0 1", "x10 sign"),
+        remarked=True,
+    ),
+    Kind(
+        "a load that differs from the weighed one by less than its tolerance",
+        (
+            *_near("robots.main.load.com_mm", "0 1 2"),
+            *_at("robots.main.load.com_mm", "0 1", "/10"),
+        ),
+    ),
+    Kind(
         "where a sensor is in the flange: only a weighing in several attitudes shows it",
         (
             *_near("force_sensors.force.flange_T_sensor", "0 1 2 3"),
             *_at("force_sensors.force.flange_T_sensor", "2", "/10"),
         ),
+        remarked=None,
     ),
     Kind(
         "another sensor's data sheet",

@@ -14,8 +14,9 @@ class Kind:
 
     reason: str
     patterns: tuple[str, ...]
-    remarked: bool = False
-    """Whether `cellctl check` shows them beside a good file."""
+    remarked: bool | None = False
+    """Whether `cellctl check` shows them beside a good file; None: in cells that have stored the
+    calibration which tells."""
 
 
 FIGURES = (

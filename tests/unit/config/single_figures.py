@@ -220,6 +220,12 @@ _DRAWINGS = (
 )
 
 _IN_LISTS = (
+    deck(
+        "com_mm = [30.0, 20.0, 460.0]",
+        "com_mm = [30.0, 20.0, -460.0]",
+        "robots.main.load.com_mm",
+        "before the flange",
+    ),
     _antenna(
         "shift_mm = [18.0, 6.0]",
         "shift_mm = [18.0, 60.0]",

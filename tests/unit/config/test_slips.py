@@ -47,7 +47,7 @@ def judged(
         kind = kind_of(edit, kinds)
         if kind is None:
             undecided.append(f"{edit.name}: {edit.figure.text} to {edit.after}")
-        elif kind.remarked != remarked:
+        elif kind.remarked not in (None, remarked):
             otherwise.append(f"{edit.name}, which is there because of: {kind.reason}")
     return undecided, otherwise
 

@@ -85,11 +85,11 @@ def _faces(needs: ArmNeeds, room: BoxRoom) -> Iterator[ConfigIssue]:
 
 
 def _column(needs: ArmNeeds, room: BoxRoom) -> Iterator[ConfigIssue]:
-    """A box that comes nearer to A1 than the arm's own turret, at the height of its column."""
-    _, height_m, turret_m, _ = needs.chain.dh[0]
+    """A box that comes nearer to A1 than the arm's own turret, over which its upper arm stands."""
+    turret_m = needs.chain.dh[0, 2]
     nearest_mm = np.maximum(np.maximum(room.lower_mm, -room.upper_mm)[:2], 0.0)
     away_mm = float(np.linalg.norm(nearest_mm))
-    if away_mm < abs(turret_m) / MM and room.lower_mm[2] < height_m / MM:
+    if away_mm < abs(turret_m) / MM:
         said = (
             f"the box comes within {away_mm:.0f} mm of the axis A1, and the arm's own turret "
             f"reaches out to {abs(turret_m) / MM:.0f} mm: the box does not keep the tool out of it"

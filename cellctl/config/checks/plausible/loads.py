@@ -15,10 +15,11 @@ _LEAST_TOLERANCE_MM = 0.5
 
 
 def load_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Tolerances that let any load pass, and weights that the sensor cannot measure."""
+    """Tolerances that let any load pass, loads in the arm, weights beyond the sensor's range."""
     for name, robot in cell.robots.items():
         if robot.load is not None:
             yield from _tolerances(f"robots.{name}.load", robot.load)
+            yield from _behind(f"robots.{name}.load.com_mm", robot.load)
             yield from _weight(cell, name, robot.load)
             yield from _straight(cell, name, robot.load)
 
@@ -44,6 +45,12 @@ def _tolerances(path: str, load: LoadConfig) -> Iterator[ConfigIssue]:
     elif load.tolerance_mm < _LEAST_TOLERANCE_MM:
         allowed = f"at least {_LEAST_TOLERANCE_MM:g} mm; no weighing is so exact, was it in metres?"
         yield ConfigIssue(f"{path}.tolerance_mm", f"{load.tolerance_mm:g}", allowed)
+
+
+def _behind(key: str, load: LoadConfig) -> Iterator[ConfigIssue]:
+    if load.com_mm[2] < 0.0:
+        allowed = "before the flange, whose z points away from the arm: z of at least 0"
+        yield ConfigIssue(key, str(list(load.com_mm)), allowed)
 
 
 def _straight(cell: CellConfig, robot: str, load: LoadConfig) -> Iterator[ConfigIssue]:
