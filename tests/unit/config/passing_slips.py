@@ -103,8 +103,9 @@ FIGURES = (
         ("recipes.module_mass_kg *",),
     ),
     Kind(
-        "where the board hangs no camera has seen yet: the procedure finds none in its picture",
+        "a board that would hang beside where camera II was measured",
         ("processes.antenna-module.flange_T_board_mm /10",),
+        remarked=True,
     ),
     Kind("the number by which the line asks for it: the line's to say", ("recipes.id x10",)),
     Kind(
