@@ -8,6 +8,7 @@ from cellctl.geometry.pose import MM
 from cellctl.interfaces.motion_bounds import MotionBounds
 from cellctl.interfaces.robot import ForwardKinematics, Robot
 from drivers.robot.siasun.kinematics import arm_chain
+from drivers.robot.siasun.published import published_reach_m
 
 
 class DescribedArm(Robot):
@@ -44,3 +45,8 @@ class DescribedArm(Robot):
     def chain(cls, config: Any) -> ArmChain | None:
         """The arm by the dh table and the joint limits of the settings; None without a table."""
         return arm_chain(config)
+
+    @classmethod
+    def published_reach_m(cls, config: Any) -> float | None:
+        """By the model with which the robot's name begins; None where the settings have no name."""
+        return published_reach_m(getattr(config, "robot_name", ""))

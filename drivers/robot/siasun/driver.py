@@ -37,7 +37,6 @@ from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.described_arm import DescribedArm
 from drivers.robot.siasun.followed_stream import followed
 from drivers.robot.siasun.link_facts import link_facts
-from drivers.robot.siasun.published import published_reach_m
 from drivers.robot.siasun.targets import MotionTarget, Targets
 
 
@@ -66,11 +65,6 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     def needs_permit(cls, config: Any) -> bool:  # noqa: ARG003
         """Always: dead man and stop are job programs, and an alarm of one ends it."""
         return True
-
-    @classmethod
-    def published_reach_m(cls, config: Any) -> float | None:
-        """By the model with which the robot's name begins."""
-        return published_reach_m(config.robot_name)
 
     @classmethod
     def check_joint_target(cls, config: Any, joints_rad: Array) -> None:
