@@ -4,8 +4,6 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard
-from cellctl.calibration.boards.board_images import BoardImages, detect_view
-from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.stereo_station import StereoStation
@@ -31,6 +29,11 @@ async def calibrate_head(
 
     Begins at the pose from which the head sees the board; nothing may stand in its way.
     """
+    # What computes is loaded when it is used: checks of a cell file load this module for its moves.
+    from cellctl.calibration.boards.board_images import BoardImages, detect_view
+    from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
+    from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
+
     base_T_flange = station.robot.state().base_T_flange
     poses = flange_poses(base_T_flange, station.flange_T_head, view_count)
     views: list[BoardView] = []
@@ -54,9 +57,6 @@ async def calibrate_head(
     if not views:
         raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")
     result = await workers.run_within(SOLVE_S, calibrate_stereo, views, board, image_size)
-    # Loaded when it is drawn: checks of a cell file load this module for its moves.
-    from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
-
     return ProcedureOutcome(
         kind=kind,
         record=result.to_record(),
