@@ -68,6 +68,19 @@ def test_pins_that_stand_on_the_deck_are_a_fault_without_a_search_and_found_with
 
 
 @pytest.mark.long
+@pytest.mark.parametrize("seed", [11, 14])
+def test_short_chamfers_are_passed_below_the_limit(seed: int) -> None:
+    """Of 0.06 mm, and the deck slips in its grip beside their walls."""
+    short = PINS.model_copy(update={"chamfer_mm": 0.06})
+    left = np.array([BESIDE_MM * MM, 0.0, 0.0, 0.0, 0.0, 0.0])
+    trial = Trial("pins", seed, stiffness_n_m=1e6, stop_latency_ms=20.0)
+    pins = PinSettings(ENGAGED_M, greatest_travel_m=0.5 * MM)
+    run_trial(trial, special={"pins": short, "left": left}, pins=pins, stiffness_n_m=5.5e5)
+    assert trial.outcome == "seated", trial.text
+    assert trial.true_peak_n < 50.0
+
+
+@pytest.mark.long
 def test_pins_under_a_soft_seat_are_met_as_gently_as_under_a_hard_one() -> None:
     """A plan for the seat alone would go on for 250 ms at 0.3 mm/s, and press 80 N."""
     left = np.array([(PINS.clearance_mm + PINS.chamfer_mm + 0.1) * MM, 0.0, 0.0, 0.0, 0.0, 0.0])
