@@ -180,12 +180,12 @@ test-parallel test-version test-cell test-explore test-long coverage coverage-ad
 # start would compile all of cellctl anew, and each worker all tests.
 test-parallel test-version test-cell test-explore test-long coverage coverage-add: export PYTHONDONTWRITEBYTECODE =
 
-# Three workers fill two processors, since some tests wait. Not more where there are more processors:
-# time limits within tests are those of two.
+# Four workers fill two processors, since many tests wait: for programs, servers and timers. Not more
+# where there are more processors: time limits within tests are those of two.
 # What failed beside other tests is run once more, alone, unless it is more than a few.
 AGAIN := --last-failed --last-failed-no-failures none --most-again 3
 test-parallel: venv
-	$(BIN)/pytest -n 3 -m "not cell and not long" --durations 25 || \
+	$(BIN)/pytest -n 4 -m "not cell and not long" --durations 25 || \
 		$(BIN)/pytest -m "not cell and not long" $(AGAIN)
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
