@@ -100,12 +100,6 @@ def no_covariance(of_problem: Any, *_: object) -> Any:
     return np.zeros((size, size))
 
 
-def blur_sigma(*sigmas: float) -> tuple[Replacement, ...]:
-    """Other standard deviations of stretch (two) and tail of the blur."""
-    both = np.array([0.25, *sigmas])
-    return (solver, "UNKNOWN_SIGMA", sigmas), (selection, "_BLUR_SIGMA", both)
-
-
 TERMS = (
     Term("lay of the face", ("deck", "frame"), ((fit_input, "surface_lay", always(None)),)),
     Term(
@@ -168,9 +162,6 @@ TERMS = (
             ),
         ),
     ),
-    Term("blur: by direction", EVERYTHING, blur_sigma(1e-4, 1e-4, 0.5)),
-    Term("blur: tail", EVERYTHING, blur_sigma(0.3, 0.3, 1e-4)),
-    Term("arcs off the circle", EVERYTHING, ((selection, "judged_by_arcs", lambda fit: fit),)),
     Term(
         "blur known from other rims",
         RINGS,

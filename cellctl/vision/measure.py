@@ -29,7 +29,6 @@ from cellctl.vision.holes.locate import LOCATE_REACH_PX, locate_holes, rim_rois
 from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, WholeImageSearch, search_windows
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper_baseline import measure_pair_by_paper
-from cellctl.vision.rim.blur import Blur
 from cellctl.vision.rim.image_scale import with_image_scales
 from cellctl.vision.rim.roi import RimRoi
 from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
@@ -150,15 +149,17 @@ def _measure(
         rim_rois(images, hole, place_m, located.normal)
         for hole, place_m in zip(holes, located.positions_m, strict=True)
     ]
-    blurs: list[tuple[Blur, Blur]] = []
+    blurs: list[tuple[float, float]] = []
     # Rims that show the blur of the images come first. The others are given it: the turns of a
     # thread, for one, look like blur themselves.
     for index in sorted(range(len(holes)), key=lambda index: not kind_of(holes[index]).lends_blur):
         hole = holes[index]
         rois = all_rois[index]
-        rims = measure_rims(rois, located.places[index], _common(blurs))
+        known = np.median(blurs, axis=0) if blurs else None
+        blur_px = None if known is None else (float(known[0]), float(known[1]))
+        rims = measure_rims(rois, located.places[index], blur_px)
         if kind_of(hole).lends_blur:
-            blurs.append((rims.left.blur, rims.right.blur))
+            blurs.append((rims.left.blur_px, rims.right.blur_px))
         _check_sharpness(rois, rims)
         measured[index] = rims
     pairs = with_image_scales([measured[index] for index in range(len(holes))])
@@ -172,20 +173,11 @@ def _measure(
     return result
 
 
-def _common(blurs: Sequence[tuple[Blur, Blur]]) -> tuple[Blur, Blur] | None:
-    """The blur of each image, from the rims that have shown it; None as long as there is none."""
-    if not blurs:
-        return None
-    left, right = np.median([[one.vector for one in both] for both in blurs], axis=0)
-    return Blur.possible(left), Blur.possible(right)
-
-
 def _check_sharpness(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
     for roi, rim in zip(rois, (rims.left, rims.right), strict=True):
-        blur_px = rim.blur.widest_px
-        if blur_px > _MAX_BLUR_PX:
+        if rim.blur_px > _MAX_BLUR_PX:
             raise ImageBlurred(
-                f"{roi.side}: the rim of {roi.hole.name} is blurred over {blur_px:.1f} px, "
+                f"{roi.side}: the rim of {roi.hole.name} is blurred over {rim.blur_px:.1f} px, "
                 f"allowed {_MAX_BLUR_PX:.1f} px"
             )
 

@@ -94,18 +94,18 @@ def _middle(
     """Middle of what each pixel collects of a surface, shape (2, n).
 
     A pixel collects light from its surroundings. Where a surface covers only part of them, its grey
-    is that at the middle of this part: the moments of the blur times the gradient of the coverage,
-    over the coverage, away from the pixel. This is exact for a grey that changes linearly.
+    is that at the middle of this part: blur² times the gradient of the coverage, over the coverage,
+    away from the pixel. This is exact for a grey that changes linearly.
     """
     share = np.ones_like(pixels.grey) if inner is None else edges[inner].outside
     slope = np.zeros_like(pixels.points) if inner is None else edges[inner].by_pixel
     if outer is not None:
         share, slope = share - edges[outer].outside, slope - edges[outer].by_pixel
-    shift_px = shape.blur.spread(slope) / np.maximum(share, _LEAST_SHARE)
+    shift_px = slope * (shape.blur_px**2 / np.maximum(share, _LEAST_SHARE))
     length = np.sqrt(shift_px[0] ** 2 + shift_px[1] ** 2)
     # Where the coverage goes to nothing the quotient grows without limit, while the pixel collects
     # nothing from beyond three blurs.
-    shift_px *= np.minimum(1.0, 3.0 * shape.blur.sigma_px / np.maximum(length, 1e-9))
+    shift_px *= np.minimum(1.0, 3.0 * shape.blur_px / np.maximum(length, 1e-9))
     by_pixel = pixels.jacobian
     return np.asarray(pixels.points + by_pixel[:, 0] * shift_px[0] + by_pixel[:, 1] * shift_px[1])
 

@@ -56,8 +56,6 @@ def robust_sigma(residuals: Array) -> float:
 class PixelNoise:
     """Errors of the pixels: independent ones, and strokes of the face that many pixels share."""
 
-    sigma: Array
-    """Standard deviation of each pixel's own error, shape (n,)."""
     weights: Array
     """One over the variance of each pixel's own error, less for outliers, shape (n,)."""
     strokes: csr_array
@@ -69,14 +67,10 @@ class PixelNoise:
     """Covariance of the strokes' heights given the pixels, shape (k, k)."""
 
     @classmethod
-    def of(cls, sigma: Array, strokes: csr_array, shares: Array | float = 1.0) -> "PixelNoise":
-        """Noise from its parts, with the posterior of the strokes' heights computed.
-
-        ``shares`` (n,) is what is left of each pixel's weight.
-        """
-        weights = shares / sigma**2
+    def of(cls, weights: Array, strokes: csr_array) -> "PixelNoise":
+        """Noise from its parts, with the posterior of the strokes' heights computed."""
         normal = (csr_array(strokes * weights) @ strokes.T).toarray() + np.eye(strokes.shape[0])
-        return cls(sigma, weights, strokes, np.asarray(np.linalg.inv(normal)))
+        return cls(weights, strokes, np.asarray(np.linalg.inv(normal)))
 
     def weigh(self, rows: Array) -> Array:
         """Rows (…, n) times the inverse of the errors' covariance.
@@ -108,9 +102,9 @@ def noise_of(residuals: Array, outside: Array, strokes: csr_array) -> PixelNoise
         own, height = _own_and_strokes(residuals[bright], strokes[:, bright])
     sigma = np.sqrt(dark**2 + (own**2 - dark**2) * outside)
     seen = csr_array(strokes * height) if height > _LEAST_STROKE_GREY else strokes[:0]
-    noise = PixelNoise.of(sigma, seen)
+    noise = PixelNoise.of(sigma**-2.0, seen)
     scaled = np.abs(noise.own(residuals)) / sigma
-    return PixelNoise.of(sigma, seen, np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)))
+    return PixelNoise.of(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2, seen)
 
 
 def _own_and_strokes(residuals: Array, strokes: csr_array) -> tuple[float, float]:

@@ -13,19 +13,20 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.arcs import arc_shares, arcs_of
 from cellctl.vision.rim.light import LightModel, Surface, surfaces
 from cellctl.vision.rim.noise import PixelNoise, no_strokes, noise_of, stroke_pattern
-from cellctl.vision.rim.shape import FIRST_RATIO, Border, RimPixels, RimShape, borders
+from cellctl.vision.rim.shape import Border, RimPixels, RimShape, borders
 
+_BLUR_LIMITS_PX = (0.35, 4.0)
+"""The pixel alone blurs by 0.29 px (a box of one pixel has the variance 1/12)."""
 _WALL_LIMITS = (0.0, 0.2)
 """Depth of a wall over the distance of the plane: at 500 mm a bore of at most 100 mm."""
 _RING_LIMITS = (1.02, 1.7)
 """Outside of these a ring means something else: one of no width has the rim's own edge."""
 _RIDGE = 1e-11
 """Added to the unit diagonal of a normal matrix, so that terms that no pixel shows stay finite."""
-_FLAT_GREY = 5.0
-"""Standard deviation of every pixel before its noise is known."""
+_FLAT_WEIGHT = 0.04
+"""Weight of every pixel before its noise is known, 1/grey²: that of a noise of 5 grey."""
 
 
 def add_to_diagonal(matrix: Array, values: Array | float) -> None:
@@ -64,8 +65,9 @@ class RimView:
         values = self.selection @ vector
         # Clipped here and not in the step of the solver: the search may leave these limits and come
         # back, while the model is only ever computed inside them.
+        values[3] = _inside(values[3], _BLUR_LIMITS_PX)
         if self.model.wall_ratio is not None:
-            values[FIRST_RATIO] = _inside(values[FIRST_RATIO], _WALL_LIMITS)
+            values[4] = _inside(values[4], _WALL_LIMITS)
         if self.model.ring_ratio is not None:
             values[-1] = _inside(values[-1], _RING_LIMITS)
         return self.model.with_vector(values)
@@ -147,7 +149,7 @@ class RimSolution:
 def initial_solution(problem: RimProblem, vector: Array) -> RimSolution:
     """Solution at the start, where the noise is not known yet: equal weights."""
     count = sum(len(view.pixels.grey) for view in problem.views)
-    noise = PixelNoise.of(np.full(count, _FLAT_GREY), no_strokes(count))
+    noise = PixelNoise.of(np.full(count, _FLAT_WEIGHT), no_strokes(count))
     return solve_light(problem, vector, noise)
 
 
@@ -157,27 +159,6 @@ def relinearised(problem: RimProblem, solution: RimSolution, *, weigh: bool = Tr
     if weigh:
         noise = noise_of(solution.residuals, solution.outside, _strokes(problem, solution))
     return solve_light(problem, solution.vector, noise)
-
-
-def shares_of_arcs(problem: RimProblem, solution: RimSolution) -> Array:
-    """What is left of each pixel's weight where its arc is off the circle, 0 to 1, shape (n,)."""
-    residuals, shares, first = solution.noise.own(solution.residuals), [], 0
-    for view in problem.views:
-        part = slice(first, first + len(view.pixels.grey))
-        first = part.stop
-        offsets = view.pixels.points - view.shape(solution.vector).centre[:, None]
-        by_radius = solution.design[solution.lights + int(np.argmax(view.selection[2])), part]
-        sigma = solution.noise.sigma[part]
-        shares.append(arc_shares(arcs_of(offsets), by_radius, sigma, residuals[part]))
-    return np.concatenate(shares)
-
-
-def without_bad_arcs(problem: RimProblem, solution: RimSolution) -> RimSolution:
-    """The same shape with the noise as the residuals show it, and arcs off the circle left out."""
-    solution = relinearised(problem, solution)
-    noise = solution.noise
-    shares = noise.weights * noise.sigma**2 * shares_of_arcs(problem, solution)
-    return solve_light(problem, solution.vector, PixelNoise.of(noise.sigma, noise.strokes, shares))
 
 
 def _strokes(problem: RimProblem, solution: RimSolution) -> csr_array:

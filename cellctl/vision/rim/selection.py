@@ -13,18 +13,14 @@ from scipy.special import expit
 from cellctl.geometry.pose import Array
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import SecondEdge
-from cellctl.vision.rim.blur import START_BLUR, Blur
 from cellctl.vision.rim.fit_input import RimFitInput
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.problem import add_to_diagonal, with_unit_diagonal
 from cellctl.vision.rim.shape import RimShape, outside_circles, outside_walls
 from cellctl.vision.rim.solver import (
-    UNKNOWN_SIGMA,
     RimFit,
-    RimPrior,
     coarse_fit,
     full_fit,
-    judged_by_arcs,
     refine,
     single_image_problem,
     two_image_problem,
@@ -37,20 +33,16 @@ _RIDGE = 1e-6
 _RING_WIDTHS_PX = (1.0, 2.0, 3.5)
 """Widths of a ring that is tested for."""
 
+_START_BLUR_PX = 1.0
 _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """Depths at which a fit may start: it converges from above the true one, not always from below."""
-_LEAST_WALL_PX = 0.1
-"""Width below which a fitted wall is none: its light then only imitates a shift of the rim."""
 _HINT_GAIN = 4.0
 """Fall of chi square from which on a fit with a wall is worth its time."""
 
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
-_BLUR_SIGMA: Array = np.array([0.25, *UNKNOWN_SIGMA])
-_KNOWN_BLUR_SIGMA: Array = np.array([0.03, 0.01, 0.01, 0.02])
-_LIKELY_BLUR_SIGMA: Array = np.array([0.1, 0.1, 0.1, 0.3])
-"""Prior of ``Blur.vector`` about the first guess, and about what other rims of the image show: for
-two edges, and wider for one, which shows its blur itself."""
+_BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
+"""Prior of the blur about the first guess, and about what other rims of the image have shown."""
 _WALL_M, _WALL_SIGMAS = 2e-3, 4.0
 """Depth of a wall that may be all that there is, and its standard deviation over it."""
 _TURNS_GREY = 15.0
@@ -127,53 +119,33 @@ class SelectedFit:
     image, shape (2, 2), or of (x, y) in both images and the radius, shape (5, 5)."""
 
 
-def fit_single_image(given: RimFitInput, known: Blur | None) -> SelectedFit:
-    """Fit a rim in one image by itself, with a wall below it or without.
-
-    ``known`` is the blur that other rims have shown in this image, where there are any.
-    """
+def fit_single_image(given: RimFitInput) -> SelectedFit:
+    """Fit a rim in one image by itself, with a wall below it or without."""
     kind, across_lay = given.roi.kind, given.across_lay()
-    light, prior = LightModel(cone=kind.cone), RimPrior(given.roi.nominal_radius)
-    if known is not None:
-        prior = replace(prior, blur=known, blur_sigma=_LIKELY_BLUR_SIGMA)
-    bare = RimShape(given.centre, given.radius, prior.blur)
-    problem = single_image_problem(given.pixels, bare, light, prior, across_lay)
+    light, radius = LightModel(cone=kind.cone), given.roi.nominal_radius
+    bare = RimShape(given.centre, given.radius, _START_BLUR_PX)
+    problem = single_image_problem(given.pixels, bare, light, radius, across_lay)
     plain = full_fit(problem, bare.vector)
-    by_arcs = _by_arcs(plain)
     if not kind.may_show_wall:
-        return by_arcs
-    # The test needs one linear solve, a fit with a wall many. A rim that it passes is done. It asks
-    # the whole rim: a wall seen as a narrow crescent is a few arcs off the circle, too.
+        return SelectedFit(plain, np.zeros((2, 2)))
+    # The test needs one linear solve, a fit with a wall many. A rim that it passes is done.
     tests = ScoreTests(plain)
     ratio, gain = tests.likely_wall([depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M])
     if gain < _HINT_GAIN and not tests.uneven_inside():
-        return by_arcs
+        return SelectedFit(plain, np.zeros((2, 2)))
     shape = replace(plain.shapes[0], wall_ratio=ratio)
-    with_wall = single_image_problem(given.pixels, shape, light, prior, across_lay)
-    walled = _by_arcs(full_fit(with_wall, shape.vector))
-    foot_px = float(np.linalg.norm(given.centre)) / given.patch.unit_px
-    seen_px = (walled.fit.shapes[0].wall_ratio or 0.0) * foot_px
-    return by_arcs if seen_px < _LEAST_WALL_PX else _likelier(by_arcs, walled)
+    with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
+    return _likelier(plain, full_fit(with_wall, shape.vector))
 
 
-def _by_arcs(fit: RimFit) -> SelectedFit:
-    """The fit without the arcs that are not where the circle is; these widen its covariance."""
-    judged = judged_by_arcs(fit)
-    geometry = slice(2 if len(fit.problem.views) == 1 else 5)
-    off = judged.solution.vector[geometry] - fit.solution.vector[geometry]
-    # The share of what is left out is the probability that the true rim is there.
-    left_out = float(np.mean(judged.solution.noise.weights == 0.0))
-    return SelectedFit(judged, np.outer(off, off) * left_out)
-
-
-def _likelier(plain: SelectedFit, walled: SelectedFit) -> SelectedFit:
+def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
     """The better one by the information criterion; the other widens its covariance."""
-    for_wall = float(expit(0.5 * (plain.fit.bic() - walled.fit.bic())))
+    for_wall = float(expit(0.5 * (plain.bic() - walled.bic())))
     # The probability of the rejected model times the squared distance of its centre is the variance
     # that choosing between them adds.
-    off = walled.fit.solution.vector[:2] - plain.fit.solution.vector[:2]
+    off = walled.solution.vector[:2] - plain.solution.vector[:2]
     best, against = (walled, 1.0 - for_wall) if for_wall > 0.5 else (plain, for_wall)
-    return SelectedFit(best.fit, best.spread + np.outer(off, off) * against)
+    return SelectedFit(best, np.outer(off, off) * against)
 
 
 class StereoEvidence:
@@ -220,17 +192,17 @@ class StereoEvidence:
 def fit_two_edges(
     given: tuple[RimFitInput, RimFitInput],
     second: SecondEdge,
-    known: tuple[Blur, Blur] | None,
+    blur_px: tuple[float, float] | None,
 ) -> SelectedFit:
     """Fit a rim in both images at once: with a flat ring, with a cone, or with a wall alone.
 
-    ``known`` is the blur that other rims have shown in these images, where there are any. The
+    ``blur_px`` is the blur that other rims have shown in these images, where there are any. The
     outer edge of a cone lies nearer to the cameras than the rim, so the two images show it in
     different places: that tells a cone from a flat ring.
     """
-    blurs, blur_sigma = (START_BLUR, START_BLUR), _BLUR_SIGMA
-    if known is not None:
-        blurs, blur_sigma = known, _KNOWN_BLUR_SIGMA
+    blurs, blur_sigma = (_START_BLUR_PX, _START_BLUR_PX), _BLUR_SIGMA_PX
+    if blur_px is not None:
+        blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     pixels, across_lay = (given[0].pixels, given[1].pixels), given[0].across_lay()
 
     def coarse(sigma: float, **second_edge: float) -> RimFit:
@@ -261,5 +233,4 @@ def _likeliest(models: list[RimFit]) -> SelectedFit:
     geometry = np.array([model.solution.vector[:5] for model in models])
     off = geometry - geometry[best]
     spread = (off * (likelihoods / likelihoods.sum())[:, None]).T @ off
-    chosen = _by_arcs(refine(models[best]))
-    return SelectedFit(chosen.fit, chosen.spread + spread)
+    return SelectedFit(refine(models[best]), np.asarray(spread))

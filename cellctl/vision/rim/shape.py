@@ -3,8 +3,8 @@
 Up to four surfaces meet at a hole: the plate, the ring of a chamfer, the visible part of the wall,
 and the dark inside. Their borders are circles in coordinates of the rim's plane: the outer edge of
 the ring, the rim, and the lower edge of the wall. The lower edge lies h below a plane at distance D
-and is therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One blur
-softens all of them.
+and is therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaussian blurs
+all of them.
 
 Arrays hold one pixel a column, because this is the inner loop of every measurement: rows are then
 contiguous in memory.
@@ -14,15 +14,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtr
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.blur import SIZE as _BLUR_SIZE
-from cellctl.vision.rim.blur import Blur, EdgeBlur
 
-BLUR = slice(3, 3 + _BLUR_SIZE)
-"""Where the blur stands in ``RimShape.vector``."""
-FIRST_RATIO = 3 + _BLUR_SIZE
-"""Where the ratios begin that only some models have."""
+_SQRT_2PI = float(np.sqrt(2.0 * np.pi))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +42,7 @@ class RimShape:
     centre: Array
     """Shape (2,)."""
     radius: float
-    blur: Blur
+    blur_px: float
     wall_ratio: float | None = None
     """Depth of the visible wall over the plane's distance; None when no wall is modelled."""
     ring_ratio: float | None = None
@@ -58,15 +54,15 @@ class RimShape:
     def vector(self) -> Array:
         """Centre, radius, blur and, where modelled, wall ratio and ring ratio."""
         optional = [value for value in (self.wall_ratio, self.ring_ratio) if value is not None]
-        return np.array([*self.centre, self.radius, *self.blur.vector, *optional])
+        return np.array([*self.centre, self.radius, self.blur_px, *optional])
 
     def with_vector(self, vector: Array) -> "RimShape":
         """The same model with other numbers."""
-        rest = [float(value) for value in vector[FIRST_RATIO:]]
+        rest = [float(value) for value in vector[4:]]
         wall = None if self.wall_ratio is None else rest.pop(0)
         ring = None if self.ring_ratio is None else rest.pop(0)
-        blur = Blur.possible(vector[BLUR])
-        return RimShape(np.array(vector[:2]), float(vector[2]), blur, wall, ring, self.ring_slope)
+        centre, radius, blur_px = np.array(vector[:2]), float(vector[2]), float(vector[3])
+        return RimShape(centre, radius, blur_px, wall, ring, self.ring_slope)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,14 +94,15 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     """Borders between neighbouring surfaces, from the outermost to the innermost."""
     rim = _circle(pixels, shape.centre, shape.radius)
     by_rim = _by_centre_and_radius(rim, shape)
-    found = [_blurred(pixels, shape, rim, by_rim)]
+    bend_px = _bend_px(pixels, shape)
+    found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
     if shape.ring_ratio is not None:
-        found.insert(0, _blurred(pixels, shape, *_outer_circle(pixels, shape)))
+        found.insert(0, _blurred(*_outer_circle(pixels, shape), shape.blur_px, bend_px))
     if shape.wall_ratio is not None:
         shrink = 1.0 + shape.wall_ratio
         low = _circle(pixels, shape.centre / shrink, shape.radius / shrink)
         by_low = _by_centre_and_radius(low, shape) / shrink
-        by_low[FIRST_RATIO] = (shape.centre @ low.unit + shape.radius) * low.px / shrink**2
+        by_low[4] = (shape.centre @ low.unit + shape.radius) * low.px / shrink**2
         # The lower edge is hidden wherever it lies outside the rim: there the rim itself ends the
         # wall, which then covers nothing.
         seen = low.distance_px > rim.distance_px
@@ -115,7 +112,7 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
             np.where(seen, low.direction, rim.direction),
             rim.px,
         )
-        found.append(_blurred(pixels, shape, inner, np.where(seen, by_low, by_rim)))
+        found.append(_blurred(inner, np.where(seen, by_low, by_rim), shape.blur_px, bend_px))
     return found
 
 
@@ -125,17 +122,15 @@ def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -
     shrink = 1.0 + np.array(ratios)[:, None]
     x, y = pixels.points[:, None] - shape.centre[:, None, None] / shrink
     low_px = (np.sqrt(x * x + y * y) - shape.radius / shrink) * rim.px
-    blur = shape.blur.across(rim.direction)
-    inner_px = np.maximum(low_px, rim.distance_px)
-    return blur.outside(inner_px + _bend_px(pixels, shape, blur))
+    inner_px = np.maximum(low_px, rim.distance_px) + _bend_px(pixels, shape)
+    return np.asarray(ndtr(inner_px / shape.blur_px))
 
 
 def outside_circles(pixels: RimPixels, shape: RimShape, radii: Array) -> Array:
     """Share of each pixel outside circles (k,) round the rim's centre, in its plane, (k, n)."""
     rim = _circle(pixels, shape.centre, shape.radius)
     distances_px = rim.distance_px - (radii - shape.radius)[:, None] * rim.px
-    blur = shape.blur.across(rim.direction)
-    return blur.outside(distances_px + _bend_px(pixels, shape, blur))
+    return np.asarray(ndtr((distances_px + _bend_px(pixels, shape)) / shape.blur_px))
 
 
 def wall_depth(points: Array, shape: RimShape) -> Array:
@@ -152,9 +147,13 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
 
 
-def _bend_px(pixels: RimPixels, shape: RimShape, blur: EdgeBlur) -> Array:
-    """How far the half level of the blurred rim lies inside it, shape (n,)."""
-    return blur.bend() * (pixels.unit_px / shape.radius)
+def _bend_px(pixels: RimPixels, shape: RimShape) -> float:
+    """How far the half level of a blurred disc of radius r lies inside its edge: blur²/(2 r).
+
+    Blur takes more light from the outside of a curved edge than from its inside. Without this the
+    radius would come out too small.
+    """
+    return 0.5 * shape.blur_px**2 * pixels.unit_px / shape.radius
 
 
 def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:
@@ -186,10 +185,9 @@ def _by_centre_and_radius(circle: _Circle, shape: RimShape) -> Array:
     return derivatives
 
 
-def _blurred(pixels: RimPixels, shape: RimShape, circle: _Circle, by_distance: Array) -> Border:
-    blur = shape.blur.across(circle.direction)
-    distance_px = circle.distance_px + _bend_px(pixels, shape, blur)
-    outside, density, by_blur = blur.with_derivatives(distance_px)
+def _blurred(circle: _Circle, by_distance: Array, blur_px: float, bend_px: float) -> Border:
+    z = (circle.distance_px + bend_px) / blur_px
+    density = np.exp(-0.5 * z * z) / (_SQRT_2PI * blur_px)
     by_shape = by_distance * density
-    by_shape[BLUR] = by_blur
-    return Border(outside, by_shape, circle.direction * density)
+    by_shape[3] = -z * density
+    return Border(np.asarray(ndtr(z)), by_shape, circle.direction * density)

@@ -1,12 +1,10 @@
 """Robust maximum-likelihood fit of a rim by damped Gauss-Newton steps, in one image or in both."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.blur import SIZE as _BLUR_SIZE
-from cellctl.vision.rim.blur import START_BLUR, Blur
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.noise import median
 from cellctl.vision.rim.problem import (
@@ -16,19 +14,14 @@ from cellctl.vision.rim.problem import (
     add_to_diagonal,
     initial_solution,
     relinearised,
-    shares_of_arcs,
     solve_light,
     with_unit_diagonal,
-    without_bad_arcs,
 )
-from cellctl.vision.rim.shape import BLUR, FIRST_RATIO, RimPixels, RimShape
+from cellctl.vision.rim.shape import RimPixels, RimShape
 
 _RADIUS_SIGMA = 0.005
 """Standard deviation of the radius about the drawing's, relative. It counts only where little of a
 rim stands out."""
-UNKNOWN_SIGMA = (0.3, 0.3, 0.5)
-"""Standard deviations of stretch and tail of the blur where no other rim tells them: a movement
-over three pixels behind a sharp lens stretches by 0.4, a lens out of focus has a tail of -0.7."""
 _WALL_SIGMAS = 4.0
 """Standard deviation of a wall's depth over its first guess. Where the lower edge of the wall is
 out of sight, nothing else holds its depth."""
@@ -43,10 +36,6 @@ _LOWER_EDGE = 0.03
 """Largest share of a movement of the wall's lower edge by which the rim follows it. A round that
 ended without regard to that edge left its way to the next ones: one fit in five then took seven to
 thirty rounds instead of one in twenty (24 pairs of images of three assemblies)."""
-_ARC_ROUNDS = 4
-"""Rounds in which the other arcs find their circle: each without the pull of what is left out."""
-_MOST_JUDGED_ROUNDS = 8
-"""The fit to the other arcs begins at its end: one that creeps does not come to a better one."""
 _MAX_STEP_PX = 0.7
 """Longest step of a centre or a radius; see ``_moved``."""
 _MAX_DAMPING = 1e4
@@ -80,31 +69,19 @@ class RimFit:
         return count * float(np.log(mean_square)) + free * float(np.log(count))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class RimPrior:
-    """What is known of a rim before its image is fitted."""
-
-    radius: float
-    """Plane units."""
-    blur: Blur = START_BLUR
-    blur_sigma: Array = field(default_factory=lambda: np.array([np.inf, *UNKNOWN_SIGMA]))
-    """Standard deviation of ``Blur.vector``."""
-
-
 def single_image_problem(
-    pixels: RimPixels, start: RimShape, light: LightModel, prior: RimPrior, across_lay: Array | None
+    pixels: RimPixels, start: RimShape, light: LightModel, radius: float, across_lay: Array | None
 ) -> RimProblem:
-    """One image of a rim, with the parts that ``start`` has.
+    """One image of a rim of about ``radius`` (plane units), with the parts that ``start`` has.
 
     ``across_lay`` is the unit vector across the lay of the face, if it has one.
     """
     mean, sigma = start.vector, np.full(len(start.vector), np.inf)
     # The prior is the size on the drawing, not the located size: the edges that located the rim are
     # the same pixels, and would be counted twice.
-    mean[2], sigma[2] = prior.radius, _RADIUS_SIGMA * prior.radius
-    mean[BLUR], sigma[BLUR] = prior.blur.vector, prior.blur_sigma
+    mean[2], sigma[2] = radius, _RADIUS_SIGMA * radius
     if start.wall_ratio is not None:
-        sigma[FIRST_RATIO] = _WALL_SIGMAS * start.wall_ratio
+        sigma[4] = _WALL_SIGMAS * start.wall_ratio
     view = RimView(pixels, start, np.eye(len(mean)))
     return RimProblem((view,), light, mean, sigma, across_lay)
 
@@ -113,7 +90,7 @@ def two_image_problem(
     pixels: tuple[RimPixels, RimPixels],
     starts: tuple[RimShape, RimShape],
     light: LightModel,
-    sigmas: tuple[Array, float],
+    sigmas: tuple[float, float],
     across_lay: Array | None,
 ) -> RimProblem:
     """Both images of a rim with a ring round it or a wall below; ``starts`` are the prior means.
@@ -122,26 +99,21 @@ def two_image_problem(
     cameras see the same ring in the same light: what they share is estimated once, so that the
     difference between the images, hence the depth, does not suffer from it.
 
-    ``sigmas`` are the standard deviations of ``Blur.vector`` and of the ring or wall ratio. Joint
-    parameters: x, y left; x, y right; radius left; blur left; blur right; ratio.
+    ``sigmas`` are the standard deviations of the blur in px and of the ring or wall ratio. Joint
+    parameters: x, y left; x, y right; radius left; blur left and right; ratio.
     """
     left, right = starts
     # Plane units are distances from the camera: the camera that is nearer sees a larger radius.
-    nearer, ratio = right.radius / left.radius, float(left.vector[FIRST_RATIO])
-    own = 5 + 2 * _BLUR_SIZE
-    selections = np.zeros((2, FIRST_RATIO + 1, own + 1))
-    blurs = [range(5 + index * _BLUR_SIZE, 5 + (index + 1) * _BLUR_SIZE) for index in (0, 1)]
-    for index, blur in enumerate(blurs):
-        selections[index, range(FIRST_RATIO + 1), [2 * index, 2 * index + 1, 4, *blur, own]] = 1.0
-    selections[1, 2, 4] = nearer
+    nearer, ratio = right.radius / left.radius, float(left.vector[4])
+    selections = np.zeros((2, 5, 8))
+    selections[0, range(5), [0, 1, 4, 5, 7]] = 1.0
+    selections[1, range(5), [2, 3, 4, 6, 7]] = [1.0, 1.0, nearer, 1.0, 1.0]
     if left.wall_ratio is not None:
-        selections[1, FIRST_RATIO, own] = nearer
-    mean = np.array(
-        [*left.centre, *right.centre, left.radius, *left.blur.vector, *right.blur.vector, ratio]
-    )
+        selections[1, 4, 7] = nearer
+    mean = np.array([*left.centre, *right.centre, left.radius, left.blur_px, right.blur_px, ratio])
     sigma = np.full(len(mean), np.inf)
     sigma[4] = _RADIUS_SIGMA * left.radius
-    sigma[5:own], sigma[own] = np.tile(sigmas[0], 2), sigmas[1]
+    sigma[5:7], sigma[7] = sigmas
     outer = [float(np.percentile(part.grey, 90)) for part in pixels]
     views = tuple(
         RimView(part, shape, selection, grey / outer[0])
@@ -166,32 +138,8 @@ def refine(coarse: RimFit) -> RimFit:
     return _minimised(coarse.problem, start, _FINE_PX, weighing_rounds=0)
 
 
-def judged_by_arcs(fit: RimFit) -> RimFit:
-    """The fit without the arcs that are not where the circle is; unchanged where all are.
-
-    The information of what is left out is missing in the covariance, too.
-    """
-    problem = fit.problem
-    if shares_of_arcs(problem, fit.solution).all():
-        return fit
-    trial = without_bad_arcs(problem, fit.solution)
-    for _ in range(_ARC_ROUNDS):
-        trial = without_bad_arcs(problem, _settle(problem, trial, _SETTLED_PX))
-    judged = _minimised(
-        problem, trial, _FINE_PX, weighing_rounds=0, most_rounds=_MOST_JUDGED_ROUNDS
-    )
-    # Where hardly a half agrees, the arcs may swing between two circles. Then all of them count,
-    # and their disagreement widens the covariance.
-    return judged if judged.converged else fit
-
-
 def _minimised(
-    problem: RimProblem,
-    start: RimSolution,
-    tolerance_px: float,
-    *,
-    weighing_rounds: int,
-    most_rounds: int = _MAX_ROUNDS,
+    problem: RimProblem, start: RimSolution, tolerance_px: float, *, weighing_rounds: int
 ) -> RimFit:
     """The best solution, and whether it settled.
 
@@ -201,7 +149,7 @@ def _minimised(
     """
     best = start
     change_px = np.inf
-    for number in range(most_rounds):
+    for number in range(_MAX_ROUNDS):
         anchor = best.vector
         best = _settle(problem, best, _SETTLED_PX if number else _ROUGH_PX)
         change_px = _step_px(problem, best.vector - anchor)
@@ -256,7 +204,7 @@ def _lower_edge_px(problem: RimProblem, step: Array) -> float:
     moved = 0.0
     for view in problem.views:
         if view.model.wall_ratio is not None:
-            change = abs(float((view.selection @ step)[FIRST_RATIO]))
+            change = abs(float((view.selection @ step)[4]))
             foot_px = float(np.linalg.norm(view.pixels.points[:, 0])) / view.pixels.unit_px
             moved = max(moved, change * foot_px)
     return moved

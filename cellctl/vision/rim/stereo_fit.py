@@ -7,7 +7,6 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.ellipse import Ellipse, ellipse_of_circle
 from cellctl.vision.camera.triangulation import joint_covariance
-from cellctl.vision.rim.blur import Blur
 from cellctl.vision.rim.covariance import RatedFit, with_covariance
 from cellctl.vision.rim.fit_input import RimFitInput, fit_input
 from cellctl.vision.rim.roi import RADIUS_TOLERANCE, LocatedRim, RimRoi
@@ -46,7 +45,7 @@ class Rim:
     """The rim in the raw image, for pictures."""
     size_ratio: float
     """Measured over nominal diameter, if the plane's distance is right."""
-    blur: Blur
+    blur_px: float
     misfit: float
     """As in ``RatedFit``."""
 
@@ -64,17 +63,16 @@ class RimPair:
 def measure_rims(
     rois: tuple[RimRoi, RimRoi],
     located: tuple[LocatedRim, LocatedRim],
-    known: tuple[Blur, Blur] | None,
+    blur_px: tuple[float, float] | None,
 ) -> RimPair:
     """Measure a located rim, left image first; its plane must be known to about a degree.
 
-    ``known`` is the blur of other rims in these images, where there are any. Raises
+    ``blur_px`` is the blur of other rims in these images, where there are any. Raises
     ``HoleMissing`` when a fit is no measurement of this rim.
     """
     kind = rois[0].kind
     given = _fit_inputs(rois, located, kind.first_ring_px)
-    blurs = known or (None, None)
-    fits = fit_single_image(given[0], blurs[0]), fit_single_image(given[1], blurs[1])
+    fits = fit_single_image(given[0]), fit_single_image(given[1])
     # Both single fits come first even where a second edge is likely: they are the evidence by which
     # the kind decides, and for a rim with one edge they are already the result.
     second = kind.second_edge(StereoEvidence(given, fits))
@@ -82,7 +80,7 @@ def measure_rims(
         return _from_single_fits(given, fits)
     ring_px = max(_LEAST_RING_PX, second.width * given[0].radius / given[0].patch.unit_px)
     given = _fit_inputs(rois, located, ring_px)
-    return _from_joint_fit(given, fit_two_edges(given, second, known))
+    return _from_joint_fit(given, fit_two_edges(given, second, blur_px))
 
 
 def refuse_too_uncertain(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
@@ -141,7 +139,7 @@ def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float)
         covariance_px2=covariance_px2 + np.eye(2) * _FLOOR_PX**2,
         ellipse=ellipse_of_circle(point_px, jacobian * shape.radius),
         size_ratio=shape.radius / given.roi.nominal_radius,
-        blur=shape.blur,
+        blur_px=shape.blur_px,
         misfit=rated.misfit,
     )
 

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from cellctl.vision.camera.ellipse import Ellipse
-from cellctl.vision.rim.blur import Blur
 from cellctl.vision.rim.image_scale import image_scale, with_image_scales
 from cellctl.vision.rim.stereo_fit import Rim, RimPair
 
 COVARIANCE = np.array([[4e-4, 1e-4], [1e-4, 2e-4]])
 ELLIPSE = Ellipse(np.zeros(2), (20.0, 19.0), 0.0)
-RIM = Rim(np.zeros(2), COVARIANCE, ELLIPSE, 1.0, Blur(1.0), misfit=1.0)
+RIM = Rim(np.zeros(2), COVARIANCE, ELLIPSE, 1.0, 1.0, misfit=1.0)
 
 
 def pair(left: float, right: float) -> RimPair:
