@@ -1,10 +1,11 @@
 """Calibrate a stereo head on the chessboard, from many views of its robot (paper 2.1.1)."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard
-from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.calibration import BoardNotFound
@@ -12,6 +13,9 @@ from cellctl.geometry.pose import MM
 from cellctl.procedures.calibration_poses import stereo_views
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import SOLVE_S, VisionWorkers
+
+if TYPE_CHECKING:
+    from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 
 WORKING_DISTANCE_M = 0.5
 
@@ -23,7 +27,7 @@ async def calibrate_head(
     *,
     board: CalibrationBoard,
     view_count: int,
-    kind: CalibrationKind[StereoResult],
+    kind: "CalibrationKind[StereoResult]",
 ) -> ProcedureOutcome:
     """Swing the head about the board, find its corners in every pair, solve, and drive back.
 

@@ -12,7 +12,11 @@ from cellctl.doctor.pc import Pc
 from cellctl.records.files.delivery_file import FOLDER, NAME, DeliveryState, write_state
 from tests.unit.doctor.healthy_pc import CELL_FILE
 
-WELL = DeliveryState(told=utc_now(), delivered=utc_now(), still_to_come=0)
+
+def state_of(**changes: object) -> DeliveryState:
+    """Of a delivery that is well this very moment, but for the changes."""
+    well = DeliveryState(told=utc_now(), delivered=utc_now(), still_to_come=0)
+    return well.model_copy(update=changes)
 
 
 def fleet_cell(folder: Path) -> CellConfig:
@@ -33,14 +37,14 @@ def test_a_cell_without_a_fleet_is_not_asked(tmp_path: Path) -> None:
 
 
 def test_all_is_delivered(tmp_path: Path) -> None:
-    finding = found(tmp_path, WELL)
+    finding = found(tmp_path, state_of())
     assert finding.health is Health.GOOD
     assert finding.found.startswith("all entries delivered, the last at ")
 
 
 def test_a_delivery_that_fails_has_its_reason_and_what_waits(tmp_path: Path) -> None:
-    changes = {"fault": "F831 server away", "remedy": "look at the network", "still_to_come": 7}
-    finding = found(tmp_path, WELL.model_copy(update=changes))
+    state = state_of(fault="F831 server away", remedy="look at the network", still_to_come=7)
+    finding = found(tmp_path, state)
     assert (finding.health, finding.remedy) == (Health.DOUBTFUL, "look at the network")
     assert "7 entries still to come" in finding.found
     assert "F831" in finding.found
@@ -48,8 +52,7 @@ def test_a_delivery_that_fails_has_its_reason_and_what_waits(tmp_path: Path) -> 
 
 def test_a_forwarder_that_is_not_there_or_has_gone(tmp_path: Path) -> None:
     assert "nothing is heard" in found(tmp_path, None).found
-    old = WELL.model_copy(update={"told": utc_now() - timedelta(minutes=10)})
-    gone = found(tmp_path, old)
+    gone = found(tmp_path, state_of(told=utc_now() - timedelta(minutes=10)))
     assert gone.health is Health.DOUBTFUL
     assert "silent since" in gone.found
     Pc(root=tmp_path).path(FOLDER / NAME).write_text("half a", encoding="utf-8")
