@@ -17,9 +17,11 @@ from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.messages import (
     Message,
     fault_from_json,
+    gravity_compensation_to_json,
     limits_to_json,
     set_up_to_json,
     trip_from_json,
+    wrench_frame_to_json,
 )
 from cellctl.guard.report import GuardSample, GuardSamples, GuardTrip, TareResult, TripReason
 from cellctl.guard.settling import USUAL, Settling
@@ -69,6 +71,7 @@ class GuardClient:
         self._degraded: tuple[str, ...] = ()
         self._gravity_compensation: Message | None = None
         self._wrench_frame: Message | None = None
+        """None: the sensor's own."""
 
     # --- start and end
 
@@ -132,11 +135,7 @@ class GuardClient:
 
     async def set_gravity_compensation(self, compensation: GravityCompensation) -> None:
         """Subtract what hangs on the sensor from now on; drops the tare."""
-        load = {
-            "load": compensation.A.tolist(),
-            "offset": compensation.b.tolist(),
-            "base_down": list(compensation.base_down),
-        }
+        load = gravity_compensation_to_json(compensation)
         await self._request("gravity_compensation", **load)
         self._gravity_compensation = load
 
@@ -146,19 +145,21 @@ class GuardClient:
         load = (self._gravity_compensation or {"load": ()})["load"]
         return any(any(row) for row in load)
 
-    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
-        """Give wrenches in this frame from now on; drops the tare.
+    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform | None) -> None:
+        """Give wrenches in this frame of the part from now on; drops the tare.
 
-        Forces and moments, and with them limits and touch, are then about the origin and in the
-        axes of this frame, for instance the mating face of a part. Until the first call it is the
-        sensor frame itself.
+        Forces and moments, and with them limits and touch, are then about its origin and in its
+        axes. None, and until the first call, is the sensor frame itself.
         """
-        frame = {
-            "rotation": sensor_T_wrench.rotation.as_matrix().ravel().tolist(),
-            "translation_m": sensor_T_wrench.translation.tolist(),
-        }
+        own = RigidTransform.identity()
+        frame = wrench_frame_to_json(own if sensor_T_wrench is None else sensor_T_wrench)
         await self._request("wrench_frame", **frame)
-        self._wrench_frame = frame
+        self._wrench_frame = None if sensor_T_wrench is None else frame
+
+    @property
+    def in_part_frame(self) -> bool:
+        """False in the sensor's own axes: the signs of a wrench say nothing of a part then."""
+        return self._wrench_frame is not None
 
     async def tare(self, duration_s: float) -> TareResult:
         """Average the wrench over the next ``duration_s`` and subtract that from then on."""

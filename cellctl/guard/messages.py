@@ -4,18 +4,27 @@ Requests have an ``id`` and a ``do``; answers repeat the id with ``result`` or `
 have an ``event``. The socket keeps the packets apart, so there is no framing to get out of step.
 The guard never waits for room: an event that does not fit is dropped, and the shared status tells
 the same facts.
+
+The guard process imports this module, so it imports no arrays; they are named in annotations only.
 """
+
+from __future__ import annotations
 
 import json
 import socket
 from dataclasses import asdict
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cellctl.errors.base import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.fault_catalogue import known_fault
 from cellctl.guard.limits import CusumTouch, GuardLimits, GuardSettings
 from cellctl.guard.report import GuardTrip, TripReason
+
+if TYPE_CHECKING:
+    from scipy.spatial.transform import RigidTransform
+
+    from cellctl.force.gravity.gravity_compensation import GravityCompensation
 
 Message = dict[str, Any]
 
@@ -71,6 +80,23 @@ def limits_from_json(message: Message) -> GuardLimits:
     for name in ("raw", "filtered", "rate_hz"):
         fields[name] = tuple(fields[name])
     return GuardLimits(**fields)
+
+
+def gravity_compensation_to_json(compensation: GravityCompensation) -> Message:
+    """What hangs on the sensor in the form of a message."""
+    return {
+        "load": compensation.A.tolist(),
+        "offset": compensation.b.tolist(),
+        "base_down": list(compensation.base_down),
+    }
+
+
+def wrench_frame_to_json(sensor_T_wrench: RigidTransform) -> Message:
+    """The frame of the wrenches in the form of a message, the rotation row by row."""
+    return {
+        "rotation": sensor_T_wrench.rotation.as_matrix().ravel().tolist(),
+        "translation_m": sensor_T_wrench.translation.tolist(),
+    }
 
 
 def trip_to_json(trip: GuardTrip) -> Message:

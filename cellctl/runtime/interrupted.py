@@ -63,8 +63,9 @@ def _poses(cell: Cell) -> list[str]:
 
 
 async def _force(cell: Cell, name: str) -> str:
-    """The mean force on one sensor in words.
+    """The mean force on one sensor in words; with its components where their axes are the part's.
 
+    A sign in the sensor's own axes would contradict what the line is shown of the same force.
     No tare is taken: nobody knows whether the part is in contact, and a tare would hide just that.
     So the drift of the sensor's zero is part of the figure.
     """
@@ -79,4 +80,5 @@ async def _force(cell: Cell, name: str) -> str:
         return f"{name}: unknown ({fault})"
     weight = "without the payload's weight" if guard.gravity_compensated else "payload included"
     force_n = float(np.linalg.norm([x_n, y_n, z_n]))
-    return f"{name}: {force_n:.1f} N (Fx {x_n:.1f}, Fy {y_n:.1f}, Fz {z_n:.1f} N), {weight}"
+    axes = f" (Fx {x_n:.1f}, Fy {y_n:.1f}, Fz {z_n:.1f} N)" if guard.in_part_frame else ""
+    return f"{name}: {force_n:.1f} N{axes}, {weight}"

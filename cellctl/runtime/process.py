@@ -118,11 +118,12 @@ class Process(ProcessDefinition, Generic[P, R, S]):
         """Reset, with all robots ready: leave the station, whatever a run has left there."""
 
     async def show_contact_force(self) -> None:
-        """Have the guards subtract the weight of the payload, as far as it is known; moves nothing.
+        """Have the guards show the force on the part, as far as it is known; moves nothing.
 
-        Called once after a start that found an interrupted run, so that the operator is told the
-        force of the contact and not the weight of the part. Raises the faults of calibrations and
-        guard; by default nothing is done.
+        Without the weight of the payload, and in the frame of the part as in a run: the sensor's
+        own z may look the other way. Called once after a start that found an interrupted run, so
+        that the operator is told the force of the contact and not the weight of the part. Raises
+        the faults of calibrations, robot and guard; by default nothing is done.
         """
 
     @classmethod

@@ -1,5 +1,7 @@
 """The snapshot that the line sees."""
 
+from collections.abc import Callable
+
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.clock import Monotonic, now_s
@@ -29,14 +31,17 @@ class StatusView:
         jobs: JobFactory,
         calibrations: CalibrationStore,
         alarms: Alarms,
+        awaits_trips: Callable[[str], bool],
         clock: Monotonic = now_s,
     ) -> None:
+        """``awaits_trips`` says of a force sensor whether a step deals with its trips itself."""
         self._cell = cell
         self._machine = machine
         self._board = board
         self._jobs = jobs
         self._calibrations = calibrations
         self._alarms = alarms
+        self._awaits_trips = awaits_trips
         self._now_s = clock
 
     def snapshot(self, job: Job | EarlierRun | None, result: Result, parts: int) -> CellStatus:
@@ -59,7 +64,7 @@ class StatusView:
             calibration_ok=self._calibrations.all_valid(self._calibrations.kinds),
             simulation=self._cell.config.simulated,
             manual=self._any_manual(),
-            force_guard_tripped=any(guard.trip for guard in self._cell.guards.values()),
+            force_guard_tripped=self._force_guard_tripped(),
             hold_requested=machine.hold_requested,
             stop_not_confirmed=bool(self._cell.unstopped),
             alarms=alarms,
@@ -97,14 +102,28 @@ class StatusView:
                 continue  # a robot without a fresh state is reported as a fault, not as manual
         return False
 
+    def _force_guard_tripped(self) -> bool:
+        """Whether a trip is latched other than the touch that a step looks for.
+
+        Every mating finds its touch, and a line that takes the bit for an alarm would have one with
+        every good part. A touch that nobody waits for, or waits for no more, is such a stop.
+        """
+        return any(
+            guard.trip is not None and not (guard.trip.touch and self._awaits_trips(name))
+            for name, guard in self._cell.guards.items()
+        )
+
     def _force_z_n(self) -> float:
         """Fz of the first force sensor in the cell file: the register has room for one sensor.
 
-        The register map says that gravity is removed from it. As long as no payload is known there
-        is nothing to remove, and so no value.
+        The register map says that it is along z of the part, without gravity. As long as no payload
+        is known there is no gravity to remove, and the sensor's own axes may look the other way, so
+        that the sign would be wrong: in both cases there is no value.
         """
         guard = next(iter(self._cell.guards.values()), None)
         sample = None if guard is None else guard.newest()
-        if guard is None or sample is None or not guard.gravity_compensated:
+        if guard is None or sample is None:
+            return NO_VALUE
+        if not (guard.gravity_compensated and guard.in_part_frame):
             return NO_VALUE
         return float(sample.wrench[2])

@@ -88,6 +88,7 @@ class UnitController:
             jobs=self.factory,
             calibrations=self.calibrations,
             alarms=self.alarms,
+            awaits_trips=self.awaits_trips,
             clock=clock,
         )
         self.parts = 0

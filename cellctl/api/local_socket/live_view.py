@@ -144,6 +144,8 @@ class LiveView:
         wrench: list[float] = (
             sample.wrench.tolist() if sample is not None and weighed else [math.nan] * 6
         )
+        # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
+        shown = wrench if guard.in_part_frame else [math.nan] * 6
         return {
             "sensor": name,
             "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
@@ -151,7 +153,7 @@ class LiveView:
             "limit_n": number(status.force_limit_n),
             "presses_n": _pressing_n(status.state, wrench),
             "trip": "" if guard.trip is None else str(guard.trip),
-            "wrench": _limited(_WRENCH, wrench),
+            "wrench": _limited(_WRENCH, shown),
             "peaks": [number(value) for value in status.force_peaks],
         }
 

@@ -22,6 +22,11 @@ _HISTORY = (
     (4, "mode_time, state_time and the last eight refusals added at 80-115"),
     (5, "mate_serial added at holding 28-39"),
     (6, "validity_least added at 116"),
+    (
+        7,
+        "status bit 9 is not set by the touch that a step looks for; force_z has no value in the "
+        "sensor's own axes, where its sign could be wrong. No address has moved",
+    ),
 )
 _RESULTS = {
     Result.NONE: "not ended",

@@ -7,7 +7,7 @@ can write. Who changes an address or a meaning raises ``MAP_VERSION`` and adds t
 from dataclasses import dataclass
 from enum import StrEnum
 
-MAP_VERSION = 6
+MAP_VERSION = 7
 
 
 class Kind(StrEnum):
@@ -148,7 +148,8 @@ INPUT: tuple[Item, ...] = (
         75,
         "force_z",
         "mN",
-        "present force on the moved part along its z, without gravity, with inertia",
+        "present force on the moved part along its z, without gravity, with inertia; no value "
+        "while the payload is not known or no axes of a part are set",
     ),
     _i32(77, "force_limit", "mN", "its limit in the present recipe"),
     Item(79, "run_result", "of run_number: 0 open, else as the results"),
@@ -177,7 +178,8 @@ STATUS_BITS: tuple[tuple[str, str], ...] = (
     ("manual", "a robot is not in remote mode"),
     (
         "force_guard_tripped",
-        "the guard has requested a stop and is latched; it protects parts only",
+        "the guard has requested a stop and is latched, other than for the touch that a step looks "
+        "for; it protects parts only",
     ),
     ("state_change_in_process", "PackML StateChangeInProcess"),
     ("hold_requested", "Hold or Suspend waits for the next safe point"),

@@ -4,7 +4,6 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
@@ -30,7 +29,7 @@ async def guarded_section(arm: GuardedRobot, tolerance: WrenchTolerance) -> Asyn
     guard = arm.guard
     # Frame and gravity compensation cannot be changed while armed.
     await guard.disarm()
-    await guard.set_wrench_frame(RigidTransform.identity())
+    await guard.set_wrench_frame(None)
     weight_n = 0.0
     if not guard.gravity_compensated:
         await guard.set_gravity_compensation(GravityCompensation.none())

@@ -29,8 +29,8 @@ class GuardPort(Protocol):
         """How the guard is doing; never raises."""
         ...
 
-    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
-        """Give wrenches in this frame from now on; drops the tare."""
+    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform | None) -> None:
+        """Give wrenches in this frame from now on, None the sensor's own; drops the tare."""
         ...
 
     async def tare(self, duration_s: float) -> TareResult:

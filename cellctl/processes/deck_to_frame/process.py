@@ -155,12 +155,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
             await lift_off(cell)
 
     async def show_contact_force(self) -> None:
-        """Subtract the weight of the payload that was identified last."""
+        """Less the payload that was identified last; of a deck on its frame in the deck's axes."""
         from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
+        from cellctl.processes.deck_to_frame.moves.force_on_deck import show_force_on_deck
 
         payload = self.services.calibrations.read(PAYLOAD)
         for cell in self._cells():
-            await cell.guard.set_gravity_compensation(payload.gravity_compensation)
+            await show_force_on_deck(cell, payload.gravity_compensation)
 
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:

@@ -4,7 +4,7 @@ import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MAP_VERSION = 6
+MAP_VERSION = 7
 INPUT_COUNT = 125
 HEARTBEAT_ADDRESS = 40
 NO_VALUE = -(2**31)

@@ -226,6 +226,11 @@ async def test_tare_and_deck_frame() -> None:
         )
         await cell.client.set_gravity_compensation(load)
         turned = RigidTransform.from_translation([0.1, 0.0, 0.0])
+        assert not cell.client.in_part_frame
+        await cell.client.set_wrench_frame(RigidTransform.identity())
+        assert cell.client.in_part_frame, "a part may lie in the sensor's axes"
+        await cell.client.set_wrench_frame(None)
+        assert not cell.client.in_part_frame
         await cell.client.set_wrench_frame(turned)
         tare = await cell.client.tare(0.1)
         # The scripted robot's flange looks down (C = 180°): gravity is +z of the sensor.

@@ -108,10 +108,10 @@ class WorldGuard:
             part[:, 0], part[:, 1:7], part[:, 7:], np.zeros(len(part)), overrun=False
         )
 
-    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform) -> None:
+    async def set_wrench_frame(self, sensor_T_wrench: RigidTransform | None) -> None:
         self._monitor.require_unarmed()
-        place = sensor_T_wrench.translation.tolist()
-        self._monitor.contact.set_wrench_frame(_nine(sensor_T_wrench), place)
+        frame = RigidTransform.identity() if sensor_T_wrench is None else sensor_T_wrench
+        self._monitor.contact.set_wrench_frame(_nine(frame), frame.translation.tolist())
         self._monitor.signal_jumped()
 
     async def tare(self, duration_s: float) -> TareResult:

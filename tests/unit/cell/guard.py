@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
@@ -24,6 +25,9 @@ class TinyGuard:
     """What hangs on the robot is still at once."""
     trip: GuardTrip | None = None
     gravity_compensated: bool = True
+    in_part_frame: bool = True
+    sensor_T_wrench: RigidTransform | None = None
+    """The part's frame that was given last; ``raw`` is not turned into it."""
     armed: bool = False
     limits: list[GuardLimits] = field(default_factory=list)
     """Limits of every arming."""
@@ -47,6 +51,9 @@ class TinyGuard:
 
     async def set_wrench_frame(self, sensor_T_wrench: object) -> None:
         self._do("set_wrench_frame")
+        self.in_part_frame = sensor_T_wrench is not None
+        if isinstance(sensor_T_wrench, RigidTransform):
+            self.sensor_T_wrench = sensor_T_wrench
 
     async def tare(self, duration_s: float) -> TareResult:
         self._do("tare")

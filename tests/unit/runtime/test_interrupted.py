@@ -1,5 +1,6 @@
 """After a daemon that died in a run, the next start says where the arm stands and what it feels."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from cellctl.errors.link import StaleData
 from cellctl.errors.records import RecordNotWritten, RunInterrupted
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
 from tests.unit.daemon_rig import DaemonRig
@@ -28,7 +30,7 @@ async def died(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
     guard = rig.bench.cell.guard
     guard.raw = np.tile([0.0, 12.0, -16.0, 0.0, 0.0, 0.0], (50, 1))
     guard.asked.clear()
-    guard.gravity_compensated = False
+    guard.gravity_compensated = guard.in_part_frame = False
     return rig
 
 
@@ -61,3 +63,24 @@ async def test_what_is_not_known_is_said_and_the_cell_comes_up(died: DaemonRig) 
     text = (await died.record()).alarms[-1].text
     assert "aux_1 unknown (F207" in text
     assert "payload included" in text
+
+
+async def test_after_the_restart_the_force_has_the_sign_it_had_in_the_run(died: DaemonRig) -> None:
+    guard, bench = died.bench.cell.guard, died.bench
+    guard.sensor_T_wrench = None
+    await died.open()
+    assert guard.in_part_frame
+    in_the_run = bench.deck.arm.flange_T_sensor.inv() * pose_from_xyzabc(bench.recipe.flange_T_deck)
+    assert guard.sensor_T_wrench is not None
+    np.testing.assert_allclose(guard.sensor_T_wrench.as_matrix(), in_the_run.as_matrix())
+
+
+async def test_without_the_axes_of_the_part_no_component_has_a_sign(died: DaemonRig) -> None:
+    guard = died.bench.cell.guard
+    died.bench.cell.main.flange = died.bench.flange_over_seat(0.5)
+    await died.open()
+    assert not guard.in_part_frame, "no deck stands in a frame there"
+    text = (await died.record()).alarms[-1].text
+    assert "force: 20.0 N, without the payload's weight" in text
+    assert "Fz" not in text
+    assert math.isnan(died.shown().force_z_n)

@@ -70,6 +70,26 @@ async def test_a_force_with_the_payload_s_weight_in_it_is_no_force_on_the_part(
     assert math.isnan(rig.shown().force_z_n)
 
 
+async def test_a_force_in_the_sensor_s_own_axes_is_no_force_along_the_part_s(
+    rig: DaemonRig,
+) -> None:
+    await rig.bench.cell.guard.set_wrench_frame(None)
+    assert math.isnan(rig.shown().force_z_n)
+
+
 async def test_a_trip_is_shown(rig: DaemonRig) -> None:
     rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
     assert rig.shown().force_guard_tripped
+
+
+async def test_the_touch_that_a_step_waits_for_is_no_stop_for_the_line(rig: DaemonRig) -> None:
+    rig.bench.cell.guard.trip = GuardTrip(TripReason.TOUCH, 1.0, "touch after 12 ms")
+    assert rig.shown().force_guard_tripped, "nobody waits for it"
+    rig.unit.board.update(contact=True)
+    assert not rig.shown().force_guard_tripped
+    rig.unit.board.leave_step()
+    assert rig.shown().force_guard_tripped
+    with rig.bench.as_cell.trips_awaited("force"):
+        assert not rig.shown().force_guard_tripped
+        rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
+        assert rig.shown().force_guard_tripped, "beyond a limit, whoever waits"

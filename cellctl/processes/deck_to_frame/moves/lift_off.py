@@ -40,7 +40,7 @@ async def lift_off(cell: DeckCell) -> None:
     by more than a mating may press, and the faults of guard and robot; the arm then stays stopped.
     """
     base_T_flange = cell.main.state().base_T_flange
-    recipe = _recipe_below(cell, base_T_flange)
+    recipe = recipe_below(cell, base_T_flange)
     if recipe is None:
         return
     _log.info("lifting off the station")
@@ -101,7 +101,7 @@ def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
     return leaving_speed_m_s(mating.limit_force_n, stiffness_n_m, delay_s, SLOW_SPEED_M_S)
 
 
-def _recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:
+def recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:
     """The first recipe whose deck on the flange would be low over its frame."""
     for recipe in cell.recipes:
         if _is_low(recipe, _frame_T_deck(recipe, base_T_flange), LOW_M):

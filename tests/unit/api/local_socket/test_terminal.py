@@ -261,6 +261,17 @@ async def test_an_arm_that_presses_is_said_where_nothing_moves(
     assert (await operator.status()).forces[0].presses_n is None, "Idle: Reset has lifted off"
 
 
+async def test_in_the_sensor_s_own_axes_only_the_magnitude_is_said(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    guard = rig.bench.cell.guard
+    guard.raw = np.tile([0.0, 12.0, -32.0, 0.0, 0.0, 0.0], (len(guard.raw), 1))
+    await guard.set_wrench_frame(None)
+    (force,) = (await operator.status()).forces
+    assert force.presses_n == pytest.approx(np.hypot(12.0, 32.0))
+    assert {axis.value for axis in force.wrench} == {None}
+
+
 async def test_an_expired_calibration_is_called_so(rig: DaemonRig, operator: Operator) -> None:
     renew_calibrations(rig.bench.calibrations.path, timedelta(minutes=-1))
     report = await operator.status()
