@@ -13,6 +13,8 @@ from cellctl.calibration.output_file import write_file
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import PoseRecord, parse_pose_file
+from cellctl.force.gravity.poses import PoseRole
+from cellctl.force.gravity.signs import lever_check, lever_words
 from cellctl.force.gravity.written_otherwise import scalar_first_hint, unit_hint
 from cellctl.geometry.pose import MM
 from cellctl.procedures.payload_picture import residual_picture
@@ -32,6 +34,10 @@ def identify_payload(
     out: Annotated[Path | None, typer.Option(help="Write the result to this JSON file.")] = None,
     picture: Annotated[Path | None, typer.Option(help="Write the residuals as PNG.")] = None,
     mass_kg: Annotated[float | None, typer.Option(help="Mass that CAD says, to compare.")] = None,
+    *,
+    load_on_top: Annotated[
+        bool, typer.Option("--load-on-top", help="The load stands on the sensor, it does not hang.")
+    ] = False,
 ) -> None:
     """Identify mass, centre of mass, offsets and gravity compensation from still poses.
 
@@ -45,12 +51,18 @@ def identify_payload(
         if hint := scalar_first_hint(record):
             raise PayloadFileInvalid(f"{file}: {hint}") from fault
         raise
+    rigid, fit = result.identification.rigid, record.having(PoseRole.FIT)
+    lever = lever_check(rigid, fit.base_R_sensor, on_top=load_on_top)
+    result = result.also((lever,))
     console = Console(soft_wrap=True, highlight=False)
     hint = unit_hint(result, mass_kg)
     _show(result, console)
     # A result in other units fits as well as a good one: its own tests do not see them.
     console.print("accepted" if result.accepted and not hint else "NOT accepted")
     _say_what_else(hint or _order_hint(result, record), result, mass_kg, console)
+    if not lever.passed:
+        words = lever_words(rigid, fit.base_R_sensor)
+        console.print(f"note: {words}", style="yellow", markup=False)
     if out is not None:
         write_file(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
     if picture is not None:

@@ -108,6 +108,34 @@ def test_a_sensor_that_states_reactions_is_said_with_its_setting(csv_file: Path)
     assert "a contact would read as a pull. Set 'inverted'" in result.output
 
 
+def test_torques_with_the_other_sign_are_not_accepted(csv_file: Path, tmp_path: Path) -> None:
+    """Every residual stays as small as it was; only the lever of the weight points up."""
+    out = tmp_path / "payload.json"
+    turned = rewritten(csv_file, dict.fromkeys(MOMENTS, -1.0))
+    result = CliRunner().invoke(app, [str(turned), "--mass-kg", "200", "--out", str(out)])
+    assert result.exit_code == 3
+    assert "FAIL  share of the lever that points away from where the load is" in result.output
+    assert "above the sensor" in result.output
+    assert "the torques have the other sign" in result.output
+    assert json.loads(out.read_text(encoding="utf-8"))["accepted"] is False
+
+
+def test_a_load_on_top_of_its_sensor_has_to_be_stated(csv_file: Path) -> None:
+    turned = str(rewritten(csv_file, dict.fromkeys(MOMENTS, -1.0)))
+    stated = CliRunner().invoke(app, [turned, "--mass-kg", "200", "--load-on-top"])
+    assert stated.exit_code == 0, stated.output
+    wrong = CliRunner().invoke(app, [str(csv_file), "--mass-kg", "200", "--load-on-top"])
+    assert wrong.exit_code == 3
+    assert "below the sensor" in wrong.output
+
+
+def test_reversed_torques_are_told_from_a_sensor_that_states_reactions(csv_file: Path) -> None:
+    both = rewritten(csv_file, dict.fromkeys(FORCES + MOMENTS, -1.0))
+    assert "the torques have" not in CliRunner().invoke(app, [str(both)]).output
+    forces = rewritten(csv_file, dict.fromkeys(FORCES, -1.0))
+    assert "the torques have" in CliRunner().invoke(app, [str(forces)]).output
+
+
 def test_a_real_part_that_stands_first_is_named(csv_file: Path) -> None:
     result = CliRunner().invoke(app, [str(rewritten(csv_file, {}, "wxyz"))])
     assert result.exit_code != 0
