@@ -146,10 +146,13 @@ def transfer(
     _show("B_T_C2", result.base_T_c2)
     _show("C1_T_C2", result.c1_T_c2)
     places = {"head_1": result.base_T_c1.pose, "head_2": result.base_T_c2.pose}
-    missing = "give --cell" if cell is None else compare_heads(file, cell, places)
+    # c_T_base * base_T_head is c_T_head: the heads as a base_T_c in the file would have them.
+    if_inverted = {name: data.c_T_base * data.c_T_base * place for name, place in places.items()}
+    missing = "give --cell" if cell is None else compare_heads(file, cell, places, if_inverted)
     if missing is not None:
         console_of_figures().print(
-            f"note: nothing here has checked which head is which: {missing}",
+            "note: nothing here has checked which head is which, nor that c_T_base is not its "
+            f"inverse, base_T_c: {missing}",
             style="yellow",
             markup=False,
         )

@@ -25,12 +25,16 @@ _FAR_MM = 300.0
 
 
 def compare_heads(
-    file: Path, cell_file: Path, measured: Mapping[str, RigidTransform]
+    file: Path,
+    cell_file: Path,
+    measured: Mapping[str, RigidTransform],
+    if_inverted: Mapping[str, RigidTransform],
 ) -> str | None:
     """Why nothing could be compared; None where both heads are where the cell has them.
 
-    ``measured`` is base_T_camera by head. Raises ``FileInvalid`` for heads that are exchanged or
-    elsewhere.
+    ``measured`` is base_T_camera by head, ``if_inverted`` the same for a c_T_base that was written
+    as base_T_c. Raises ``FileInvalid`` for heads that are exchanged or elsewhere, and for an
+    inverted base.
     """
     cell = load_cell(cell_file)
     drawn = _drawn(cell, cell_file)
@@ -42,6 +46,13 @@ def compare_heads(
         )
     first, second = _HEADS
     far = {name: _apart_mm(measured[name], drawn[name]) for name in _HEADS}
+    otherwise_mm = max(_apart_mm(if_inverted[name], drawn[name]) for name in _HEADS)
+    if max(far.values()) > _FAR_MM >= otherwise_mm:
+        raise FileInvalid(
+            f"{file}: c_T_base is inverted (base_T_c)? By {cell_file} {first} and {second} are "
+            f"{far[first]:.0f} and {far[second]:.0f} mm from where they were measured, with its "
+            f"inverse at most {otherwise_mm:.0f} mm"
+        )
     pairs = ((first, second), (second, first))
     crossed = max(_apart_mm(measured[one], drawn[other]) for one, other in pairs)
     if crossed < max(far.values()) / 2.0:

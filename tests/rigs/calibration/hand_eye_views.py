@@ -20,6 +20,8 @@ CAMERA = CameraModel(
 BOARD_M = np.array([[x, y, 0.0] for y in range(8) for x in range(11)]) * 0.015 - [0.075, 0.052, 0]
 FLANGE_T_CAMERA = pose_from_xyzabc([60, -20, 90, 10, 5, -3])
 BASE_T_BOARD = pose_from_xyzabc([1500, 100, 200, 20, 0, 0])
+BASE_T_CAMERA, FLANGE_T_BOARD = BASE_T_BOARD, FLANGE_T_CAMERA
+"""The same places in the other setup: the camera stands, and the flange carries the board."""
 NOISE = RobotNoise(5e-5, float(np.radians(0.005)))
 SIGMA_PX = 0.1
 
@@ -46,7 +48,7 @@ def disturbed(rng: np.random.Generator, base_T_flange: RigidTransform) -> RigidT
 
 
 def make_poses(seed: int, setup: Setup, count: int = 20) -> list[HandEyePose]:
-    """X = FLANGE_T_CAMERA, Z = BASE_T_BOARD, or the same numbers for the other setup."""
+    """X = FLANGE_T_CAMERA and Z = BASE_T_BOARD, or X = BASE_T_CAMERA and Z = FLANGE_T_BOARD."""
     rng = np.random.default_rng(seed)
     poses = []
     for number in range(count):
@@ -54,7 +56,7 @@ def make_poses(seed: int, setup: Setup, count: int = 20) -> list[HandEyePose]:
         if setup is Setup.EYE_IN_HAND:
             base_T_flange = BASE_T_BOARD * seen.inv() * FLANGE_T_CAMERA.inv()
         else:
-            base_T_flange = FLANGE_T_CAMERA * seen * BASE_T_BOARD.inv()
+            base_T_flange = BASE_T_CAMERA * seen * FLANGE_T_BOARD.inv()
         pixels = project(CAMERA, seen.apply(BOARD_M)) + rng.normal(0, SIGMA_PX, (88, 2))
         measured, _ = board_in_camera(CAMERA, BOARD_M, pixels, SIGMA_PX)
         poses.append(HandEyePose(f"pose {number}", disturbed(rng, base_T_flange), measured))

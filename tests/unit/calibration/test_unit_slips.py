@@ -9,6 +9,7 @@ import pytest
 
 from cellctl.calibration.input_file import InputFile, read_input
 from cellctl.calibration.solvers.base_frame.base_frame_input import BaseFrameFile
+from cellctl.calibration.solvers.hand_eye.hand_eye_input import HandEyeFile
 from cellctl.calibration.solvers.tool.tool_input import ToolFile
 from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
 from cellctl.errors.config import FileInvalid
@@ -16,6 +17,7 @@ from cellctl.errors.config import FileInvalid
 SAMPLES = Path(__file__).parents[3] / "config" / "samples"
 MODELS: dict[str, type[InputFile]] = {
     "base-frame.json": BaseFrameFile,
+    "hand-eye.json": HandEyeFile,
     "transfer.json": TransferFile,
     "tool.json": ToolFile,
 }
@@ -68,3 +70,18 @@ def test_flange_poses_in_metres_are_refused(tmp_path: Path) -> None:
     path.write_text(json.dumps(content))
     with pytest.raises(FileInvalid, match="touching: millimetres belong here"):
         read_input(path, ToolFile)
+
+
+@pytest.mark.parametrize("keys", [("base_T_flange", "camera_T_board"), ("camera_T_board",)])
+def test_poses_of_robot_and_camera_in_metres_are_refused(
+    tmp_path: Path, keys: tuple[str, ...]
+) -> None:
+    """Both in metres fit each other, and the result is a thousand times too small."""
+    content = json.loads((SAMPLES / "hand-eye.json").read_text())
+    for entry in content["poses"]:
+        for key in keys:
+            entry[key][:3] = [length * 1e-3 for length in entry[key][:3]]
+    path = tmp_path / "hand-eye.json"
+    path.write_text(json.dumps(content))
+    with pytest.raises(FileInvalid, match=f"{keys[0]}: millimetres belong here"):
+        read_input(path, HandEyeFile)

@@ -15,8 +15,9 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_adjustment import (
     adjust_hand_eye,
     residuals_of,
 )
-from cellctl.calibration.solvers.hand_eye.hand_eye_limits import HandEyeLimits
+from cellctl.calibration.solvers.hand_eye.hand_eye_limits import HandEyeLimits, mounting_check
 from cellctl.calibration.solvers.hand_eye.hand_eye_mistakes import (
+    all_inverted,
     another_size,
     board_distance_m,
     explanation,
@@ -72,17 +73,20 @@ def calibrate_hand_eye(
     residuals = {pose.name: _distance(pose, setup, x, z) for pose in poses}
     kept = np.array([residuals[pose.name] for pose in used])
     camera = UncertainPose(x, solution.covariance[:6, :6])
+    board = UncertainPose(z, solution.covariance[6:, 6:])
     scale = board_scale(used, setup)
+    mounting = mounting_check(setup, camera, board)
     return HandEyeResult(
         setup=setup,
         camera=camera,
-        board=UncertainPose(z, solution.covariance[6:, 6:]),
+        board=board,
         residuals=residuals,
         rejected=tuple(rejected),
         chi2_ratio=solution.chi2_ratio,
         spread_rad=(float(spread[0]), float(spread[1]), float(spread[2])),
-        checks=limits.checks(camera, kept, solution.stated, scale),
+        checks=(*limits.checks(camera, kept, solution.stated, scale), mounting),
         warnings=(
+            *all_inverted(setup, mounting),
             *_warnings(rejected, solution.chi2_ratio),
             *another_size(*scale),
             *odd_poses(poses, rejected, lambda pose: _predicted(pose, setup, x, z)),

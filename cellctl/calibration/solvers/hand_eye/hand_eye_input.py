@@ -72,6 +72,9 @@ class HandEyeEntry(InputFile):
 class HandEyeFile(InputFile):
     """The whole file."""
 
+    # With the lengths of robot and camera both in metres the poses fit, and nothing else tells it.
+    seen_from_afar = True
+
     setup: Setup | None = None
     camera_id: str | None = None
     """Identity of the intrinsics in use; it stands in the result, too."""

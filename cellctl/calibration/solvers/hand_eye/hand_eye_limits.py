@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.calibration.checks import Checks, LimitCheck
+from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
 
@@ -66,3 +67,19 @@ class HandEyeLimits:
                 "",
             ),
         )
+
+
+def mounting_check(setup: Setup, camera: UncertainPose, board: UncertainPose) -> LimitCheck:
+    """What the flange carries is nearer to it than what stands is to the base.
+
+    Poses that are all inverted fit as well as the right ones, with camera and board in each other's
+    place: only their distances tell which is which.
+    """
+    camera_mm, board_mm = (
+        float(np.linalg.norm(one.pose.translation)) / MM for one in (camera, board)
+    )
+    if setup is Setup.EYE_IN_HAND:
+        name = "camera from the flange, less than the board from the base"
+        return LimitCheck(name, camera_mm, board_mm, "mm")
+    name = "board from the flange, less than the camera from the base"
+    return LimitCheck(name, board_mm, camera_mm, "mm")

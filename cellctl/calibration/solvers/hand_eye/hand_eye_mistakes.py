@@ -12,6 +12,7 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
+from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Setup
 from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
 from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
@@ -94,6 +95,23 @@ def another_size(scale: float, sigma: float) -> list[str]:
     return [
         f"the board is {scale:.3f} times as large as it was said to be, by the robot's motions: "
         f"check its squares and the camera's focal length"
+    ]
+
+
+def all_inverted(setup: Setup, mounting: LimitCheck) -> list[str]:
+    """Words for a mounting that is too far from the flange: the poses, or indeed the mounting."""
+    if mounting.passed:
+        return []
+    on_flange, standing = "camera", "board"
+    if setup is Setup.EYE_TO_HAND:
+        on_flange, standing = standing, on_flange
+    near_mm, far_mm = f"{mounting.limit:.0f} mm", f"{mounting.value:.0f} mm"
+    return [
+        f"the {on_flange} would be {far_mm} from the flange, farther than the {standing} from the "
+        f"base. Are all poses inverted (flange_T_base and board_T_camera)? Then the {on_flange} is "
+        f"{near_mm} from the flange and the {standing} {far_mm} from the base, and the poses fit "
+        "as well. Write base_T_flange and camera_T_board; if they are, measure the mounting: then "
+        f"the {standing} has to stand farther from the base"
     ]
 
 

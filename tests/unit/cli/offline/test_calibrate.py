@@ -22,7 +22,7 @@ from cellctl.errors.calibration import (
     WrongBoard,
 )
 from cellctl.errors.config import FileInvalid
-from cellctl.geometry.pose import MM, pose_to_xyzabc
+from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.vision.camera.lens import project
 from cellctl.vision.camera.stereo_head import CameraModel, read_stereo_head
 from fakes.render import api
@@ -72,6 +72,29 @@ def test_hand_eye(tmp_path: Path) -> None:
     truth = hand_eye_case.FLANGE_T_CAMERA
     assert np.abs(matrix[:3, 3] - truth.translation / MM).max() < 0.3
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+HAND_EYE = Path(__file__).parents[4] / "config" / "samples" / "hand-eye.json"
+
+
+def test_poses_of_a_hand_eye_calibration_that_are_all_inverted_do_not_pass(tmp_path: Path) -> None:
+    """They fit as well as the right ones, with the camera where the board is."""
+    data = json.loads(HAND_EYE.read_text())
+    for entry in data["poses"]:
+        for key in ("base_T_flange", "camera_T_board"):
+            entry[key] = written(pose_from_xyzabc(entry[key]).inv())
+        del entry["covariance_mm_deg"]
+    out = tmp_path / "out.json"
+    result = call("hand-eye", "--in", save(tmp_path / "inverted.json", data), "--out", out)
+    assert result.exit_code == 3
+    assert "FAIL  camera from the flange, less than the board from the base 1517 mm" in (
+        result.output
+    )
+    assert (
+        "Are all poses inverted (flange_T_base and board_T_camera)? Then the camera is 110 mm from "
+        "the flange and the board 1517 mm from the base"
+    ) in result.output
+    assert "all poses inverted" in json.loads(out.read_text())["warnings"][0]
 
 
 @pytest.mark.parametrize(
@@ -277,6 +300,18 @@ def test_a_transfer_in_the_base_of_another_robot_is_named(tmp_path: Path) -> Non
     result = call("transfer", "--in", save(tmp_path / "elsewhere.json", data), *cell)
     assert isinstance(result.exception, FileInvalid)
     assert "is c_T_base of this robot" in str(result.exception)
+
+
+def test_an_inverted_base_of_a_transfer_is_named_with_the_cell_file(tmp_path: Path) -> None:
+    """Nothing in the file contradicts it: the note says so where no cell file is given."""
+    data = json.loads(SAMPLE.read_text())
+    data["c_T_base"] = written(pose_from_xyzabc(data["c_T_base"]).inv())
+    file = save(tmp_path / "inverted.json", data)
+    assert "nor that c_T_base is not its inverse, base_T_c" in call("transfer", "--in", file).output
+    cell = ("--cell", SAMPLE.parents[1] / "deck.toml")
+    result = call("transfer", "--in", file, *cell)
+    assert isinstance(result.exception, FileInvalid)
+    assert "c_T_base is inverted (base_T_c)?" in str(result.exception)
 
 
 def tool_data() -> dict[str, Any]:

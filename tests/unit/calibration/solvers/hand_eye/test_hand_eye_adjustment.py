@@ -13,6 +13,8 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.geometry.uncertain import perturbed
 from tests.rigs.calibration.hand_eye_views import (
     BASE_T_BOARD,
+    BASE_T_CAMERA,
+    FLANGE_T_BOARD,
     FLANGE_T_CAMERA,
     NOISE,
     make_poses,
@@ -22,7 +24,9 @@ from tests.rigs.calibration.hand_eye_views import (
 @pytest.mark.parametrize("setup", list(Setup))
 def test_derivatives_agree_with_differences(setup: Setup) -> None:
     poses = make_poses(1, setup, 4)
-    x, z, step = FLANGE_T_CAMERA, BASE_T_BOARD, 1e-6
+    in_hand = setup is Setup.EYE_IN_HAND
+    x, z = (FLANGE_T_CAMERA, BASE_T_BOARD) if in_hand else (BASE_T_CAMERA, FLANGE_T_BOARD)
+    step = 1e-6
     here = _linearised(poses, setup, NOISE, x, z)
     for index, unit in enumerate(np.eye(12) * step):
         ahead = residuals_of(poses, setup, perturbed(x, unit[:6]), perturbed(z, unit[6:]))

@@ -66,6 +66,23 @@ def test_a_mistake_in_the_whole_file_is_named(
         calibrate_hand_eye(poses, setup)
 
 
+@pytest.mark.parametrize(
+    ("setup", "words"),
+    [
+        (Setup.EYE_IN_HAND, "the camera is 110 mm from the flange and the board 1517 mm"),
+        (Setup.EYE_TO_HAND, "the board is 110 mm from the flange and the camera 1517 mm"),
+    ],
+)
+def test_poses_that_are_all_inverted_are_named(setup: Setup, words: str) -> None:
+    poses = make_poses(2, setup, 14)
+    result = calibrate_hand_eye(changed(poses, inverted, inverted), setup)
+    assert not result.passed
+    assert words in result.warnings[0]
+    right = calibrate_hand_eye(poses, setup)
+    assert right.checks[-1].passed
+    assert not any("inverted" in warning for warning in right.warnings)
+
+
 def test_poses_of_another_day_are_explained_by_nothing() -> None:
     poses, others = make_poses(0, Setup.EYE_IN_HAND, 14), make_poses(1, Setup.EYE_IN_HAND, 14)
     mixed = [
