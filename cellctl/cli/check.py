@@ -13,9 +13,9 @@ from cellctl.atomic_files import may_write
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig
-from cellctl.config.checks.arms.needs import arm_needs, rooms
+from cellctl.config.checks.arms.needs import ArmNeeds, rooms
 from cellctl.config.checks.zones import taught_in_zone
-from cellctl.config.commissioning import examine_before_commissioning
+from cellctl.config.commissioning import Examination, examine_before_commissioning
 from cellctl.config.document.lines import FILL_IN, left_open
 from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
@@ -63,7 +63,7 @@ def check(
     if not as_json:
         _show_findings(console, cell_file, found)
         if cell is not None:
-            _show_cell(console, cell_file, cell, remarks)
+            _show_cell(console, cell_file, cell, examined)
     answers = _asked(cell, cell_file, socket) if connect and cell is not None else []
     bad_moves = list(_bad_moves(console, cell_file, quiet=as_json)) if moves and not found else []
     if as_json:
@@ -140,15 +140,13 @@ def _where(issue: ConfigIssue) -> str:
     return f"{place}{issue.key} = {issue.value}"
 
 
-def _show_cell(
-    console: Console, cell_file: Path, cell: CellConfig, remarks: Sequence[ConfigIssue]
-) -> None:
+def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Examination) -> None:
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
         console.print(f"  {key:32} {device.driver}", markup=False)
     _say_what_is_not_checked(console, cell)
     _say_what_zones_hold(console, cell)
-    _say_what_boxes_leave(console, cell)
+    _say_what_boxes_leave(console, cell, examined.needs)
     console.print(f"  {'poses':32} {_POSES}", markup=False)
     model = model_path(cell_file)
     if model.exists():
@@ -159,10 +157,10 @@ def _show_cell(
         console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
-    if remarks:
+    if examined.remarks:
         # Last, where they are read.
         console.print("Look at these again; each may be meant as it stands:", style="yellow")
-    for remark in remarks:
+    for remark in examined.remarks:
         console.print(f"  {_where(remark)}", style="yellow", markup=False)
         console.print(f"     {remark.allowed}", style="yellow", markup=False)
 
@@ -201,15 +199,15 @@ def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
         console.print(f"  {'':32} leaves first: {order}", markup=False)
 
 
-def _say_what_boxes_leave(console: Console, cell: CellConfig) -> None:
+def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[ArmNeeds]) -> None:
     """Room of each box of a flange: it is to hold what the arm has to reach, and little more."""
-    for needs in arm_needs(cell):
-        for room in rooms(cell.robots[needs.name], needs):
+    for of_arm in needs:
+        for room in rooms(cell.robots[of_arm.name], of_arm):
             left = ", ".join(
                 f"-{axis} {below:.0f} +{axis} {above:.0f}"
                 for axis, below, above in zip("xyz", room.below_mm, room.above_mm, strict=True)
             )
-            name = f"robots.{needs.name} {room.key.rsplit('.', 1)[-1]}"
+            name = f"robots.{of_arm.name} {room.key.rsplit('.', 1)[-1]}"
             text = f"leaves beyond taught poses and stated moves: {left} mm"
             console.print(f"  {name:32} {text}", markup=False)
 

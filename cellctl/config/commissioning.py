@@ -4,12 +4,13 @@ A cell that has worked for a year must still start after an update that asks for
 commissions one must not leave it so.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.boxes import box_issues, box_remarks
+from cellctl.config.checks.arms.needs import ArmNeeds, arm_needs
 from cellctl.config.checks.arms.tables import table_issues, table_remarks
 from cellctl.config.checks.cross_checks import unpermitted
 from cellctl.config.checks.plausible.findings import plausibility_issues
@@ -29,6 +30,8 @@ class Examination:
     errors: tuple[ConfigIssue, ...]
     remarks: tuple[ConfigIssue, ...]
     """What may be meant as it stands; none of a file that has errors."""
+    needs: tuple[ArmNeeds, ...]
+    """Where each arm has to come; none of a file that has errors."""
     cell: CellConfig | None
     """The cell file; None where its keys cannot be read."""
 
@@ -39,8 +42,12 @@ def examine_before_commissioning(path: Path) -> Examination:
     if cell is not None:
         found += unpermitted(cell)
         found += unless_named(found, list(_implausible(cell, path, found)))
-    remarks = [] if cell is None or found else list(_remarks(cell, path))
-    return Examination(tuple(placed(found, lines)), tuple(placed(remarks, lines)), cell)
+    needs: tuple[ArmNeeds, ...] = ()
+    remarks: list[ConfigIssue] = []
+    if cell is not None and not found:
+        needs = tuple(arm_needs(cell))
+        remarks = list(_remarks(cell, path, needs))
+    return Examination(tuple(placed(found, lines)), tuple(placed(remarks, lines)), needs, cell)
 
 
 def problems_before_commissioning(path: Path) -> list[ConfigIssue]:
@@ -76,11 +83,11 @@ def _implausible_recipe(
     return list(definition.check_placed(cell, recipe, key, path.parent, stated_bases(path)))
 
 
-def _remarks(cell: CellConfig, path: Path) -> Iterator[ConfigIssue]:
+def _remarks(cell: CellConfig, path: Path, needs: Iterable[ArmNeeds]) -> Iterator[ConfigIssue]:
     yield from cell_remarks(cell)
     yield from mounted_remarks(cell)
     yield from table_remarks(cell)
-    yield from box_remarks(cell)
+    yield from box_remarks(cell, needs)
     for index, recipe in enumerate(cell.recipes):
         definition = process_definition(recipe.process)
         yield from definition.remarks(cell, recipe, f"recipes.{index}", path.parent)

@@ -163,7 +163,6 @@ def _guard(guard: GuardClient) -> Object:
     return {
         "late_wakeups": health.late_wakeups,
         "flange_age_s": number(health.flange_age_s),
-        "resident_peak_bytes": health.resident_peak_bytes,
     }
 
 

@@ -35,5 +35,5 @@ def dirt_patch(
     two, three = speck.waves
     radius = speck.radius_m * (1 + two * np.cos(2 * angle) + three * np.cos(3 * angle))
     cover = speck.opacity * (1 - coverage(np.hypot(x - x0, y - y0) - radius))
-    grey = cover * look.exposure * speck.level
-    return ColouredPatch(Patch.from_cells(window, 1 - cover, grey, blur_px), _COLOUR)
+    level = look.exposure * speck.level
+    return ColouredPatch(Patch.of_one_grey(window, 1 - cover, level, blur_px), _COLOUR)

@@ -41,6 +41,6 @@ def mark_patch(
     if window is None:
         return None
     x, y = surface_map(view, pose, window)
-    disc = 1 - coverage(np.hypot(x - x0, y - y0) - radius_m)
+    outside = coverage(np.hypot(x - x0, y - y0) - radius_m)
     level = look.exposure * Shading.of(look.lamps, PAPER, pose).flat()
-    return ColouredPatch(Patch.from_cells(window, 1 - disc, disc * level, blur_px), WHITE)
+    return ColouredPatch(Patch.of_one_grey(window, outside, level, blur_px), WHITE)

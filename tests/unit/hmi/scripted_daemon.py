@@ -59,9 +59,7 @@ def snapshot(**changes: Any) -> dict[str, Any]:
             }
         ],
         "daemon": {"loop_late_s": 0.02, "line_beat_age_s": 0.3, "resident_bytes": 200_000_000},
-        "guards": {
-            "wrist": {"late_wakeups": 3, "flange_age_s": 0.004, "resident_peak_bytes": 60_000_000}
-        },
+        "guards": {"wrist": {"late_wakeups": 3, "flange_age_s": 0.004}},
         "faults": [],
         "alarms": [],
         "permitted": {name: {"code": 0, "reason": ""} for name in NAMES},

@@ -4,12 +4,12 @@ Measured against how far an arm reaches by its links, and against where it has t
 here is that of a certain cell.
 """
 
-from collections.abc import Iterator, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 import numpy as np
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.arms.needs import BOXES, ArmNeeds, BoxRoom, arm_needs, rooms
+from cellctl.config.checks.arms.needs import BOXES, ArmNeeds, BoxRoom, rooms
 from cellctl.config.checks.arms.tables import described_arms
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.arm.chain import ArmChain
@@ -53,13 +53,16 @@ def box_issues(
                     yield ConfigIssue(f"{key}_max_mm", written, allowed)
 
 
-def box_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Faces out of reach, boxes about the arm itself or far below its work, wide joint limits."""
-    for needs in arm_needs(cell):
-        for room in rooms(cell.robots[needs.name], needs):
-            yield from _faces(needs, room)
-            yield from _column(needs, room)
-        yield from _joints(cell, needs)
+def box_remarks(cell: CellConfig, needs: Iterable[ArmNeeds]) -> Iterator[ConfigIssue]:
+    """Faces out of reach, boxes about the arm itself or far below its work, wide joint limits.
+
+    ``needs`` are those of the cell's arms, by ``arm_needs``.
+    """
+    for of_arm in needs:
+        for room in rooms(cell.robots[of_arm.name], of_arm):
+            yield from _faces(of_arm, room)
+            yield from _column(of_arm, room)
+        yield from _joints(cell, of_arm)
 
 
 def _faces(needs: ArmNeeds, room: BoxRoom) -> Iterator[ConfigIssue]:
