@@ -192,7 +192,7 @@ test-parallel: venv
 # or draws rests on numpy, scipy and OpenCV, of which the lock holds one version for all Pythons, and
 # the page's scripts run in a browser: `test-parallel` tries these on one Python.
 COMPUTES := vision calibration force geometry planning processes procedures fakes benchmarks \
-	cli/offline cli/planning records/report hmi/test_browser.py
+	cli/offline cli/planning records/report hmi/page
 WHERE_PYTHON_MATTERS := $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
 test-version: venv
 	$(BIN)/pytest -n 3 -m "not cell and not long" $(WHERE_PYTHON_MATTERS) || \

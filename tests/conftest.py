@@ -22,7 +22,7 @@ _WHOLE_FILES = (
     "tests/unit/calibration/",  # rendered boards, solved cameras
     "tests/unit/cli/",  # rendered images, fake cells that stand for all tests of a file
     "tests/unit/fakes/scenes/",
-    "tests/unit/hmi/test_browser.py",  # one browser
+    "tests/unit/hmi/page/",  # one browser
     "tests/unit/processes/antenna_module/",  # rendered connectors, what was taught
     "tests/unit/processes/deck_to_frame/mating/test_mate.py",  # a mating
     "tests/unit/processes/deck_to_frame/test_shipped_calibration.py",

@@ -90,11 +90,11 @@ function startDialog() {
 }
 
 function made(name) {
-  const button = h("button", { type: "button", id: `cmd-${name}` }, t(`cmd_${name}`));
+  const button = h("button", { type: "button", id: `cmd-${name}`, "aria-describedby": `said-${name}` }, t(`cmd_${name}`));
   if (name === "start") button.addEventListener("click", startDialog);
   else if (PRESSED_LONG.has(name)) longPress(button, () => give(name, { request: name }));
   else button.addEventListener("click", () => give(name, { request: name }));
-  return h("div", { "data-command": name }, button, h("small", {}));
+  return h("div", { "data-command": name }, button, h("small", { id: `said-${name}`, role: "status" }));
 }
 
 export function commands() {
@@ -107,6 +107,9 @@ export function refresh(root) {
     const name = place.dataset.command;
     const reason = whyNot(name);
     place.querySelector("button").disabled = Boolean(reason);
-    place.querySelector("small").textContent = said[name] || reason || t(`does_${name}`);
+    // Written only when it has changed: a screen reader speaks what is written.
+    const words = said[name] || reason || t(`does_${name}`);
+    const small = place.querySelector("small");
+    if (small.textContent !== words) small.textContent = words;
   }
 }

@@ -46,10 +46,11 @@ export function bar(value, limit, wide = false) {
   return element;
 }
 
+// A column whose head is empty has a cell there: a head without words tells a screen reader nothing.
 export function table(heads, rows) {
   const cell = (tag, entry) => h(tag, { class: entry && entry.num ? "num" : null }, entry && entry.of !== undefined ? entry.of : entry);
   return h("div", { class: "scroll" }, h("table", {},
-    h("thead", {}, h("tr", {}, heads.map((head) => cell("th", head)))),
+    heads.length ? h("thead", {}, h("tr", {}, heads.map((head) => cell(head === "" ? "td" : "th", head)))) : null,
     h("tbody", {}, rows.map((row) => h("tr", {}, row.map((entry) => cell("td", entry)))))));
 }
 

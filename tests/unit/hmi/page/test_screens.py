@@ -1,88 +1,27 @@
 """The page in a real Chromium, before a daemon made of paper."""
 
-import os
-import shutil
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import pytest
+from playwright.sync_api import expect
 
 from cellctl.api.local_socket.messages import PlainCommand, Refused, StartCommand
 from cellctl.fault_catalogue import known_fault
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.translations import fault_words, label
+from tests.unit.hmi.page.screen import MOTION, Screen
 from tests.unit.hmi.scripted_daemon import (
     NAMES,
-    PIN,
     PaperDaemon,
     alarm,
     page_process,
-    page_thread,
     serving,
     snapshot,
 )
 
-playwright = pytest.importorskip("playwright.sync_api", reason="playwright is not installed")
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on this machine")
-expect = playwright.expect
-MOTION = ("start", "reset", "unhold")
 STATES = [state.name for state in State if state.name != "UNDEFINED"]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
-    with playwright.sync_playwright() as started:
-        found = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield found
-        found.close()
-
-
-class Screen:
-    """One tab, and what went wrong in it."""
-
-    def __init__(self, browser: Any, url: str) -> None:
-        self.context = browser.new_context(
-            viewport={"width": 1280, "height": 800}, locale="en-GB", reduced_motion="reduce"
-        )
-        self.tab = self.context.new_page()
-        self.complaints: list[str] = []
-        self.requests: list[str] = []
-        self.tab.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.tab.on("request", lambda request: self.requests.append(request.url))
-        self.url = url
-        self.tab.goto(url)
-        expect(self.tab.locator("#age")).to_contain_text("live", timeout=15_000)
-
-    def sign_in(self, name: str = "anna") -> None:
-        self.tab.click("#who")
-        self.tab.fill("#name", name)
-        self.tab.fill("#pin", PIN)
-        self.tab.press("#pin", "Enter")
-        expect(self.tab.locator("#who")).to_contain_text(name)
-
-    def button(self, name: str) -> Any:
-        return self.tab.locator(f"#cmd-{name}")
-
-    def press(self, target: Any, seconds: float) -> None:
-        target.hover()
-        self.tab.mouse.down()
-        self.tab.wait_for_timeout(1000 * seconds)
-        self.tab.mouse.up()
-
-
-@pytest.fixture
-def screen(browser: Any, settings: Path, paper: PaperDaemon) -> Iterator[Screen]:
-    with serving(settings.parent / "s", paper), page_thread(settings) as url:
-        found = Screen(browser, url)
-        yield found
-        found.context.close()
-        assert found.complaints == []
-        assert [one for one in found.requests if not one.startswith(url)] == []
 
 
 def test_every_state_has_its_word_in_both_languages(screen: Screen, paper: PaperDaemon) -> None:
@@ -183,15 +122,17 @@ def test_a_silent_daemon_makes_the_page_stale_and_it_comes_back(
 def test_a_frozen_page_process_makes_the_page_stale(
     browser: Any, settings: Path, paper: PaperDaemon
 ) -> None:
-    with serving(settings.parent / "s", paper), page_process(settings) as (process, url):
-        screen = Screen(browser, url)
+    with (
+        serving(settings.parent / "s", paper),
+        page_process(settings) as (process, url),
+        Screen(browser, url) as screen,
+    ):
         process.send_signal(signal.SIGSTOP)
         try:
             expect(screen.tab.locator("#band")).to_contain_text("NO CONNECTION TO THE CELL")
         finally:
             process.send_signal(signal.SIGCONT)
         expect(screen.tab.locator("#age")).to_contain_text("live", timeout=10_000)
-        screen.context.close()
 
 
 def test_an_alarm_moves_no_button_and_is_acknowledged(screen: Screen, paper: PaperDaemon) -> None:
