@@ -1,9 +1,10 @@
 """Decides which command is executed, and when: the one entrance for all interfaces."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 from cellctl import log
+from cellctl.command.latest import TakenCommand
 from cellctl.command.submission import Submission
 from cellctl.command.tracker import CommandTracker
 from cellctl.command.validator import CommandValidator, start_mode
@@ -47,6 +48,8 @@ class CommandArbiter:
         # Not taken while a command is validated: validation waits for the disk, and no other
         # command should wait for that.
         self._turn = asyncio.Lock()
+        self.latest: TakenCommand | None = None
+        """Of all sources, since the daemon started."""
 
     @property
     def line_alive(self) -> bool:
@@ -72,6 +75,18 @@ class CommandArbiter:
         if code is RejectCode.NONE:
             await submission.or_overtaken(self._written(submission))
         return code
+
+    def note_refusal(
+        self, command: UnitCommand, code: RejectCode, details: Mapping[str, str]
+    ) -> None:
+        """Have the audit log say, some time soon, what somebody was refused and why."""
+        detail = {**details, "refused": code.text}
+        writing = self._store.do(RunStore.audit, command.who, _name(command), detail)
+        self._unit.background.start(writing)
+
+    def _taken(self, submission: Submission) -> None:
+        self.latest = TakenCommand.of(submission.command)
+        submission.taken()
 
     async def _validate(self, submission: Submission) -> RejectCode:
         """Carry out what may wait for the disk; a disk that does not answer is a fault."""
@@ -102,7 +117,7 @@ class CommandArbiter:
                 self._unit.factory.accept(command, mode)
             code = await self._tracker.execute(submission)
             if code is RejectCode.NONE:
-                submission.taken()
+                self._taken(submission)
             if code is RejectCode.NONE and (command.cntrl_cmd or command.unit_mode):
                 # An acknowledged alarm alone changes nothing that another client decided upon.
                 self._validator.executed(command)
@@ -114,7 +129,7 @@ class CommandArbiter:
         self._unit.background.start(submission.remember())
         code = await self._tracker.execute(submission)
         if code is RejectCode.NONE:
-            submission.taken()
+            self._taken(submission)
             # In the background: nothing that can fail or wait stands beside ending motion.
             self._unit.background.start(self._audit(submission))
         return code

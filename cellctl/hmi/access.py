@@ -29,6 +29,11 @@ class Visitor:
     """Key of the session, the token or the address: what limits count by."""
     session: Session | None = None
 
+    @property
+    def idle(self) -> bool:
+        """True for somebody who may only look on because they have done nothing for long."""
+        return self.session is not None and self.role != self.session.role
+
 
 class Gatekeeper:
     """Tells visitors apart. Belongs to one event loop."""

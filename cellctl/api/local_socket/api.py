@@ -50,8 +50,10 @@ def local_api(
         return {**await reporter.description(), "registers": registers()}
 
     feed = LiveFeed(view, describe)
-    # The terminal is given the way to submit a command and nothing else of the arbiter, so that it
-    # cannot pass by the validation.
-    terminal = Terminal(cell.config, unit.machine, arbiter.submit, reporter, view)
+    # The terminal is given the way to submit a command and to note a refusal, and nothing else of
+    # the arbiter, so that it cannot pass by the validation.
+    terminal = Terminal(
+        cell.config, unit.machine, arbiter.submit, reporter, view, note_refusal=arbiter.note_refusal
+    )
     server = LocalServer(SocketFile(path, settings.group), terminal.handle, feed.follow)
     return LocalApiParts(server, feed)

@@ -12,6 +12,7 @@ from typing import Any
 from cellctl.cell.devices import Cell
 from cellctl.clock import now_s
 from cellctl.command.arbiter import CommandArbiter
+from cellctl.command.latest import TakenCommand
 from cellctl.command.permitted import permitted
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
@@ -118,6 +119,7 @@ class LiveView:
             "forces": [self._force(name, time_s, status) for name in self._cell.guards],
             "faults": [_fault(fault) for fault in machine.faults],
             "alarms": [_alarm(alarm) for alarm in self._unit.alarms.active],
+            "last_command": _taken(self._arbiter.latest),
             **self._slow,
         }
 
@@ -212,6 +214,13 @@ def _alarm(alarm: ActiveAlarm) -> Object:
         "since": alarm.since.isoformat(timespec="milliseconds"),
         "run": alarm.run,
     }
+
+
+def _taken(command: TakenCommand | None) -> Object | None:
+    if command is None:
+        return None
+    time = command.time.isoformat(timespec="milliseconds")
+    return {"who": command.who, "command": command.name, "time": time}
 
 
 def _problem(check: Any) -> str:

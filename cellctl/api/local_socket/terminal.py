@@ -1,6 +1,6 @@
 """Turns the requests of operators into commands, which are validated like those of the line PLC."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 
 from cellctl import log
@@ -36,6 +36,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.unit_command import Options, Source, UnitCommand
 
 _log = log.get(__name__)
+NoteRefusal = Callable[[UnitCommand, RejectCode, Mapping[str, str]], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,14 +69,18 @@ class Terminal:
         submit: Submit,
         reporter: Reporter,
         view: LiveView,
+        *,
+        note_refusal: NoteRefusal,
     ) -> None:
         self._config = config
         self._machine = machine
         self._submit = submit
+        self._note_refusal = note_refusal
         self._reporter = reporter
         self._view = view
         self._users = Users()
-        self._desk = PageDesk(config.local_api.page_user, self._users, view.look, self._obey)
+        page_user = config.local_api.page_user
+        self._desk = PageDesk(page_user, self._users, view.look, self._obey, self._turned_down)
 
     async def handle(self, request: Request, uid: int) -> Answer:
         """Answer a request of the user with this number.
@@ -101,8 +106,15 @@ class Terminal:
         self, request: CommandRequest, person: str, details: Mapping[str, str]
     ) -> Taken | Refused:
         """A command of a page, whose person is known."""
-        command = replace(self._command(request), source=Source.PAGE, person=person)
-        return await self._submitted(command, details)
+        return await self._submitted(self._of_page(request, person), details)
+
+    def _turned_down(
+        self, request: CommandRequest, person: str, code: RejectCode, details: Mapping[str, str]
+    ) -> None:
+        self._note_refusal(self._of_page(request, person), code, details)
+
+    def _of_page(self, request: CommandRequest, person: str) -> UnitCommand:
+        return replace(self._command(request), source=Source.PAGE, person=person)
 
     async def _submitted(self, command: UnitCommand, details: Mapping[str, str]) -> Taken | Refused:
         # The same validator and queue as for the line; nothing is decided here.

@@ -2,7 +2,7 @@
 
 import * as alarms from "./alarms.js";
 import { ask, send } from "./api.js";
-import { visitor } from "./buttons.js";
+import { onLost, visitor } from "./buttons.js";
 import * as calibration from "./calibration.js";
 import { h, shown } from "./dom.js";
 import * as health from "./health.js";
@@ -26,7 +26,7 @@ function head() {
   $("nav").replaceChildren(...Object.keys(SCREENS).map((one) => h("a", { href: `#${one}`, "aria-current": one === name ? "page" : null }, t(`nav_${one}`))));
   $("language").textContent = other();
   $("simulated").textContent = t("simulated");
-  $("who").textContent = visitor.person ? `${visitor.person} · ${t(`role_${visitor.role}`)} · ${visitor.panel || t("elsewhere")}` : t("sign_in");
+  $("who").textContent = visitor.person ? `${visitor.person} · ${t(visitor.idle ? "idle" : `role_${visitor.role}`)} · ${visitor.panel || t("elsewhere")}` : t("sign_in");
 }
 
 function band() {
@@ -67,12 +67,13 @@ function show() {
 }
 
 async function who() {
-  try { Object.assign(visitor, await ask("session")); } catch { Object.assign(visitor, { person: "", role: "view", panel: "" }); }
+  try { Object.assign(visitor, await ask("session")); } catch { Object.assign(visitor, { person: "", role: "view", panel: "", idle: false }); }
   head();
 }
 
 async function sign() {
-  if (visitor.person) {
+  // Whoever has only been idle wants to go on, and not to sign out.
+  if (visitor.person && !visitor.idle) {
     await send("DELETE", "session", {});
     await who();
     open();
@@ -103,11 +104,13 @@ $("who").addEventListener("click", sign);
 $("language").addEventListener("click", async () => { await change(); show(); });
 addEventListener("hashchange", show);
 watch((what) => {
+  if (what === "open") who();  // the page's process may be another one, which knows nobody
   if (what === "snapshot") { since = performance.now(); run.note(cell.snapshot); }
   refresh();
 });
 await who();
 setInterval(who, 30000);
+onLost(who);
 show();
 start();
 run.recall();

@@ -1,7 +1,7 @@
 // The commands of the cell. What is permitted, and why not, comes from the cell.
 
 import { command } from "./api.js";
-import { h } from "./dom.js";
+import { clock, h } from "./dom.js";
 import { cell, stale } from "./live.js";
 import { given, t } from "./texts.js";
 
@@ -13,15 +13,21 @@ const ORDER = ["start", "reset", "hold", "unhold", "clear", "stop", "abort"];
 const PANEL_ONLY = new Set(["start", "reset", "unhold", "mode", "procedure"]);
 const RANKS = { view: 0, operate: 1, maintain: 2 };
 const NEEDS = { mode: "maintain", procedure: "maintain" };
+const SUPERSEDED = 266;
 const said = {};
 
-export const visitor = { person: "", role: "view", panel: "" };
+export const visitor = { person: "", role: "view", panel: "", idle: false };
+const refusals = new Set();
+// Called when a command was refused for who or where its person is: the page may know it otherwise.
+export function onLost(act) { refusals.add(act); }
 
 // The cell's answer, and before it what is known here: both only spare a vain press.
 export function whyNot(name) {
   const needed = NEEDS[name] || "operate";
   const abortAtPanel = name === "abort" && visitor.panel;
-  if (RANKS[visitor.role] < RANKS[needed] && !abortAtPanel) return t("needs_sign_in", t(`role_${needed}`));
+  if (RANKS[visitor.role] < RANKS[needed] && !abortAtPanel) {
+    return visitor.idle ? t("idle_sign_in") : t("needs_sign_in", t(`role_${needed}`));
+  }
   if (PANEL_ONLY.has(name) && !visitor.panel) return t("panel_only");
   if (ALWAYS.has(name)) return "";  // pressed on whatever is seen: the cell gives an honest answer
   if (stale()) return t("stale_button");
@@ -43,7 +49,10 @@ export async function give(name, wanted, reason = "") {
   } catch (error) {
     const code = error.problem?.reject_code;
     const unknown = !error.status || error.status === 504;
-    said[name] = unknown ? t("no_answer") : t("refused", given(`reject_${code}`, error.message));
+    if (error.status === 401 || error.status === 403) refusals.forEach((act) => act());
+    const why = given(`reject_${code}`, error.message);
+    // Who was quicker stands in the next snapshot, a tenth of a second after the refusal.
+    said[name] = unknown ? t("no_answer") : () => t("refused", code === SUPERSEDED ? `${why} (${latest()})` : why);
     setTimeout(() => { said[name] = ""; }, 8000);
   } finally {
     waiting = false;
@@ -97,18 +106,26 @@ function made(name) {
   return h("div", { "data-command": name }, button, h("small", { id: `said-${name}`, role: "status" }));
 }
 
+// What was asked of the cell last, by whom and when.
+function latest() {
+  const last = cell.snapshot?.last_command;
+  return last ? t("last_command", given(`cmd_${last.command}`, last.command), last.who.replace(/^page:/, ""), clock(last.time)) : "";
+}
+
 export function commands() {
-  return h("section", {}, h("h2", {}, t("commands")), h("div", { class: "buttons" }, ORDER.map(made)));
+  return h("section", {}, h("h2", {}, t("commands"), h("span", { class: "dim live", id: "last-command" })), h("div", { class: "buttons" }, ORDER.map(made)));
 }
 
 // A button that is forbidden stays in its place, with the reason below it.
 export function refresh(root) {
+  root.querySelector("#last-command").textContent = latest() && ` · ${latest()}`;
   for (const place of root.querySelectorAll("[data-command]")) {
     const name = place.dataset.command;
     const reason = whyNot(name);
     place.querySelector("button").disabled = Boolean(reason);
     // Written only when it has changed: a screen reader speaks what is written.
-    const words = said[name] || reason || t(`does_${name}`);
+    const answer = typeof said[name] === "function" ? said[name]() : said[name];
+    const words = answer || reason || t(`does_${name}`);
     const small = place.querySelector("small");
     if (small.textContent !== words) small.textContent = words;
   }

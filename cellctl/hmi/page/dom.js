@@ -33,6 +33,10 @@ export function time(text) {
   return Number.isNaN(date.getTime()) ? "—" : date.toLocaleString(document.documentElement.lang, { timeZoneName: "short" });
 }
 
+export function clock(text) {
+  return new Date(text).toLocaleTimeString(document.documentElement.lang);
+}
+
 // How a magnitude stands against its limit; the mark is the limit.
 export function bar(value, limit, wide = false) {
   const element = h("div", { class: wide ? "bar wide" : "bar", "aria-hidden": "true" });

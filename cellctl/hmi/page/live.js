@@ -56,6 +56,7 @@ export function open() {
   stream = new EventSource("/api/v1/events");
   stream.addEventListener("snapshot", (event) => take("snapshot", event));
   stream.addEventListener("description", (event) => take("description", event));
+  stream.addEventListener("open", () => tell("open"));
   stream.addEventListener("error", () => {
     if (stream && stream.readyState === EventSource.CLOSED) {
       whyNot();

@@ -6,6 +6,7 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from cellctl import log
+from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.access import COOKIE, OWN_PAGE, Asked, address_of
 from cellctl.hmi.problems import Problem
 
@@ -24,8 +25,8 @@ class SignIn(BaseModel):
 
 @router.get("/session")
 async def who(visitor: Asked) -> dict[str, Any]:
-    """Who asks, with which role, at which panel."""
-    return {"person": visitor.person, "role": visitor.role, "panel": visitor.panel}
+    """Who asks, with which role, at which panel, and whether they were idle for too long."""
+    return _answer(visitor.person, visitor.role, visitor.panel, idle=visitor.idle)
 
 
 @router.post("/session", dependencies=OWN_PAGE)
@@ -44,8 +45,7 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> dict[st
     _log.info("signed in", person=person.name, role=person.role, address=address)
     secret = parts.sessions.open(person.name, person.role)
     response.set_cookie(COOKIE, secret, path="/", secure=True, httponly=True, samesite="strict")
-    panel = parts.gatekeeper.panel(request)
-    return {"person": person.name, "role": person.role, "panel": panel}
+    return _answer(person.name, person.role, parts.gatekeeper.panel(request))
 
 
 @router.delete("/session", dependencies=OWN_PAGE)
@@ -54,8 +54,8 @@ async def sign_out(request: Request, response: Response) -> dict[str, Any]:
     parts = request.app.state.parts
     parts.sessions.close(request.cookies.get(COOKIE, ""))
     response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
-    return {
-        "person": "",
-        "role": "view",
-        "panel": request.app.state.parts.gatekeeper.panel(request),
-    }
+    return _answer("", "view", parts.gatekeeper.panel(request))
+
+
+def _answer(person: str, role: Role, panel: str, *, idle: bool = False) -> dict[str, Any]:
+    return {"person": person, "role": role, "panel": panel, "idle": idle}

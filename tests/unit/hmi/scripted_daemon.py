@@ -62,6 +62,7 @@ def snapshot(**changes: Any) -> dict[str, Any]:
         "guards": {"wrist": {"late_wakeups": 3, "flange_age_s": 0.004}},
         "faults": [],
         "alarms": [],
+        "last_command": None,
         "permitted": {name: {"code": 0, "reason": ""} for name in NAMES},
         "links": {"robots.main": ""},
     } | changes

@@ -50,7 +50,9 @@ def test_a_daemon_that_says_nothing_is_no_status(page: Client, paper: PaperDaemo
 def test_a_command_goes_to_the_daemon_with_person_role_panel_and_reason(
     page: Client, paper: PaperDaemon
 ) -> None:
-    assert page.sign_in("anna").json == {"person": "anna", "role": "operate", "panel": "panel-1"}
+    anna = {"person": "anna", "role": "operate", "panel": "panel-1", "idle": False}
+    assert page.sign_in("anna").json == anna
+    assert page.get("session").json == anna
     start = {"request": "start", "serial": "SAT-9", "recipe": "1"}
     reply = page.command(start)
     assert (reply.status, reply.json["state"]) == (202, "EXECUTE")

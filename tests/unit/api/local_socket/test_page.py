@@ -12,6 +12,7 @@ from cellctl.api.local_socket.live_view import LiveView
 from cellctl.api.local_socket.messages import (
     Answer,
     CommandRequest,
+    ModeCommand,
     OnBehalf,
     PageCommand,
     PlainCommand,
@@ -21,7 +22,7 @@ from cellctl.api.local_socket.messages import (
     parse_request,
     to_line,
 )
-from cellctl.api.local_socket.page_desk import AT_A_PANEL, refusal
+from cellctl.api.local_socket.page_desk import AT_A_PANEL, NOTED_A_MINUTE, refusal
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.terminal import Terminal
 from cellctl.errors.link import LinkLost
@@ -43,7 +44,12 @@ class Page:
         self._keys = 0
         self._rig = rig
         self._terminal = Terminal(
-            cell.config, rig.unit.machine, rig.arbiter.submit, self.reporter, self.view
+            cell.config,
+            rig.unit.machine,
+            rig.arbiter.submit,
+            self.reporter,
+            self.view,
+            note_refusal=rig.arbiter.note_refusal,
         )
 
     def wanted(self, command: CommandRequest, **by: Any) -> PageCommand:
@@ -125,6 +131,38 @@ async def test_two_operators_press_at_once_and_one_is_told_that_the_cell_has_cha
     answer = await page.ask(second)
     assert isinstance(answer, Refused)
     assert answer.code == RejectCode.SUPERSEDED
+    last = page.snapshot()["last_command"]
+    assert (last["who"], last["command"]) == ("page:anna@panel-1", "stop")
+    await rig.unit.background.drain()
+    noted = await rig.archive.do(audit)
+    assert [(who, what, "refused" in detail) for who, what, detail in noted[-2:]] == [
+        ("page:anna@panel-1", "stop", False),
+        ("page:boris@panel-1", "reset", True),
+    ]
+    assert noted[-1][2]["refused"] == RejectCode.SUPERSEDED.text
+
+
+async def test_refusals_by_the_thousand_do_not_fill_the_audit_log(
+    rig: DaemonRig, page: Page
+) -> None:
+    for _ in range(NOTED_A_MINUTE + 40):
+        await page.ask(page.wanted(PlainCommand(request="stop"), role="view"))
+    await rig.unit.background.drain()
+    assert len(await rig.archive.do(audit)) == NOTED_A_MINUTE
+
+
+async def test_the_last_command_is_named_whoever_gave_it(rig: DaemonRig, page: Page) -> None:
+    assert page.snapshot()["last_command"] is None
+    await rig.idle()
+    given: list[tuple[CommandRequest, str]] = [
+        (ModeCommand(mode="maintenance"), "mode"),
+        (PlainCommand(request="stop"), "stop"),
+        (PlainCommand(request="abort"), "abort"),
+    ]
+    for command, name in given:
+        assert isinstance(await page.ask(page.wanted(command, role="maintain")), Taken)
+        assert page.snapshot()["last_command"]["command"] == name
+        await rig.until(lambda: rig.unit.machine.state is rig.unit.machine.state_requested)
 
 
 @pytest.mark.parametrize("role", ["view", "operate", "maintain"])

@@ -50,7 +50,12 @@ class Operator:
         self._view = LiveView(cell, rig.unit, rig.arbiter, dict)
         reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive, self._view)
         self._terminal = Terminal(
-            cell.config, rig.unit.machine, rig.arbiter.submit, reporter, self._view
+            cell.config,
+            rig.unit.machine,
+            rig.arbiter.submit,
+            reporter,
+            self._view,
+            note_refusal=rig.arbiter.note_refusal,
         )
 
     async def ask(self, request: Request, uid: int = UID) -> Taken | Refused:
