@@ -1,7 +1,8 @@
 """Every fault in every phase: `python -m benchmarks.faults.campaign`.
 
 Exit codes: 0 all as demanded, 1 something is not, 130 interrupted. Results are kept after every
-trial, and a campaign that was interrupted goes on where it was.
+trial, and a campaign that was interrupted goes on where it was. A second one beside it, with
+`--from-end`, works towards the first.
 """
 
 import random
@@ -83,6 +84,9 @@ class Campaign:
         begun_s = time.monotonic()
         try:
             for done, trial in enumerate(waiting, start=1):
+                self.results = table.load(self._file)
+                if trial.key in self.results:
+                    return  # the campaign that began at the other end has been here
                 self._try(trial)
                 passed_s = time.monotonic() - begun_s
                 left_s = passed_s / done * (len(waiting) - done)
@@ -107,8 +111,7 @@ class Campaign:
 
     def _keep(self, seen: Observation) -> None:
         self.not_reached.pop(seen.key, None)
-        self.results[seen.key] = seen
-        table.save(self._file, self.results)
+        self.results = table.add(self._file, seen)
 
     def _bench_for(self, phase: Phase) -> Bench:
         if phase.fresh and self._bench is not None and not self._bench.fresh:
@@ -140,6 +143,9 @@ def campaign(  # noqa: PLR0917  # options of the command line
     seed: Annotated[int, typer.Option(help="Of the fake cell.")] = 1,
     out: Annotated[Path, typer.Option(help="Folder of the tried cells.")] = Path("runs/faults"),
     page: Annotated[Path | None, typer.Option(help="Where the table goes as Markdown.")] = None,
+    from_end: Annotated[  # noqa: FBT002  # a flag of the command line
+        bool, typer.Option("--from-end", help="Begin with the last cell, beside another campaign.")
+    ] = False,
     list_only: Annotated[  # noqa: FBT002  # a flag of the command line
         bool, typer.Option("--list", help="Only name the cells.")
     ] = False,
@@ -147,6 +153,8 @@ def campaign(  # noqa: PLR0917  # options of the command line
     """Try the faults; results are kept as JSON beside the page, which is made of them."""
     console = Console(highlight=False, soft_wrap=True, markup=False)
     trials = chosen(all_trials(), only or [], tenth)
+    if from_end:
+        trials.reverse()
     if list_only:
         console.print("\n".join(trial.key for trial in trials))
         raise typer.Exit

@@ -7,7 +7,6 @@ from pymodbus.exceptions import ModbusException
 from tests.rigs.whole_cell.outside_plc import INPUT, STATES, OutsidePlc
 
 _ALARMS = [f"alarm_{number}" for number in range(1, 9)]
-_NO_VALUE = -(2**31)
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,8 +18,6 @@ class Shown:
     first_out: int
     alarms: tuple[int, ...]
     run: int
-    force_z_n: float
-    """0 while there is no value."""
 
 
 class WatchingPlc(OutsidePlc):
@@ -29,8 +26,6 @@ class WatchingPlc(OutsidePlc):
     def shown(self) -> Shown:
         """What the cell shows now."""
         block = self.block()
-        high, low = block[INPUT["force_z"] : INPUT["force_z"] + 2]
-        force_mn = (high << 16 | low) - ((high >> 15) << 32)
         run = INPUT["run_number"]
         return Shown(
             state=STATES[block[INPUT["state"]]],
@@ -38,7 +33,6 @@ class WatchingPlc(OutsidePlc):
             first_out=block[INPUT["first_out_alarm"]],
             alarms=tuple(block[INPUT[name]] for name in _ALARMS if block[INPUT[name]]),
             run=block[run] << 16 | block[run + 1],
-            force_z_n=0.0 if force_mn == _NO_VALUE else force_mn / 1000,
         )
 
     def fall_silent(self) -> None:

@@ -1,5 +1,6 @@
 """The matrix as Markdown and JSON."""
 
+import fcntl
 import json
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -43,6 +44,15 @@ def save(path: Path, results: Mapping[str, Observation]) -> None:
     text = json.dumps([asdict(seen) for seen in results.values()], indent=1)
     part.write_text(text + "\n", encoding="utf-8")
     part.replace(path)
+
+
+def add(path: Path, seen: Observation) -> dict[str, Observation]:
+    """Add one result to those of the file, where another campaign may add to it meanwhile; all."""
+    with path.with_suffix(".lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        results = load(path) | {seen.key: seen}
+        save(path, results)
+    return results
 
 
 def load(path: Path) -> dict[str, Observation]:

@@ -90,6 +90,19 @@ def test_an_interrupted_campaign_goes_on_where_it_was(
     assert len(table.load(tmp_path / "matrix.json")) == len(TRIALS)
 
 
+def test_two_campaigns_work_towards_each_other(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    first = play(monkeypatch, tmp_path, CALM, KeyboardInterrupt())
+    with pytest.raises(KeyboardInterrupt):
+        first.run(TRIALS)
+    # It began when there was nothing in the file yet, and finds the first cell when it comes there.
+    second = play(monkeypatch, tmp_path, CALM, CALM)
+    second.results = {}
+    second.run(TRIALS[::-1])
+    assert set(table.load(tmp_path / "matrix.json")) == {trial.key for trial in TRIALS}
+
+
 def test_a_phase_that_is_not_reached_is_tried_again_in_another_cell(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
