@@ -15,7 +15,7 @@ from cellctl.processes.antenna_module.faults.plugging import (
 )
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.roles import ROLES
+from cellctl.processes.antenna_module.roles import ARM, ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
@@ -79,12 +79,15 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         folder: Path,
     ) -> Iterable[ConfigIssue]:
         """Another board than that of the stored cameras, and looks beside what was measured."""
+        from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
         from cellctl.processes.antenna_module.checks.figures import board_remarks
         from cellctl.processes.antenna_module.checks.looks import look_remarks
 
         settings = cast(AntennaSettings, cell.processes[recipe.process])
+        plugged = cast(AntennaRecipe, recipe)
         yield from board_remarks(cell, settings, f"processes.{recipe.process}", folder)
-        yield from look_remarks(cell, cast(AntennaRecipe, recipe), folder)
+        yield from look_remarks(cell, plugged, folder)
+        yield from tool_floor_remarks(cell, plugged.device(ARM), plugged.flange_T_plug)
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

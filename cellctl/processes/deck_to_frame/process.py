@@ -79,10 +79,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         folder: Path,
         bases: Mapping[str, Sequence[float]],
     ) -> Iterable[ConfigIssue]:
-        """Whether the heads see the holes that they are to measure."""
+        """Whether the heads see the holes that they are to measure, and zones keep them apart."""
         from cellctl.processes.deck_to_frame.checks.plausible.seen_holes import sight_issues
+        from cellctl.processes.deck_to_frame.checks.shared_zones import shared_zone_issues
 
-        return sight_issues(cell, cast(DeckRecipe, recipe), key, folder, bases)
+        deck, settings = cast(DeckRecipe, recipe), cell.processes[recipe.process]
+        yield from sight_issues(cell, deck, key, folder, bases)
+        yield from shared_zone_issues(cell, deck, cast(DeckSettings, settings), bases)
 
     @classmethod
     def remarks(

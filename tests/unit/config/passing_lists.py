@@ -232,9 +232,17 @@ LISTS = (
         "a zone is drawn about what stands there; a larger one keeps an arm out longer",
         (
             *_near("zones.*.robots.*.m??_mm", "0 1 2"),
-            *_at("zones.*.robots.*.min_mm", "0 1 2", "x10 /10 sign"),
-            *_at("zones.*.robots.*.max_mm", "1 2", "x10 /10 sign"),
+            *_at("zones.*.robots.*.min_mm", "0 2", "/10 sign"),
+            *_at("zones.*.robots.*.max_mm", "1 2", "x10"),
+            *_at("zones.beside_head_?.robots.aux_?.min_mm", "1", "x10"),
+            *_at("zones.beside_head_1.robots.main.min_mm", "1", "x10"),
+            *_at("zones.beside_head_1.robots.main.max_mm", "1", "/10"),
+            *_at("zones.beside_head_2.robots.main.min_mm", "1", "/10"),
         ),
+    ),
+    Kind(
+        "a zone that is narrower on a side of a head's arm to which that arm never comes",
+        _at("zones.*.robots.aux_?.max_mm", "1", "/10"),
     ),
     Kind(
         "where the target board hangs: its targets are looked for in all of the picture",

@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from cellctl.cli.commands import whole_app
 from cellctl.config import problems_before_commissioning
 from cellctl.config.commissioning import examine_before_commissioning
+from tests.unit.config.between_arms import BETWEEN_ARMS
 from tests.unit.config.mistake import Mistake, Undecided
 from tests.unit.config.mistakes import MISTAKES
 from tests.unit.config.protective_mistakes import PROTECTIVE
@@ -45,7 +46,7 @@ def written(
 
 SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
-ALL = MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES
+ALL = MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS
 
 
 def test_there_are_more_than_sixty_half_by_somebody_else_and_all_differ() -> None:

@@ -1,5 +1,6 @@
 """Edits that no check can call wrong, each with its reason."""
 
+from tests.unit.config.between_arms import LOW_BOX
 from tests.unit.config.mistake import Mistake, Undecided, deck, drawn
 
 _BOTH = ("deck.toml", "frame.toml")
@@ -10,6 +11,7 @@ def _real(old: str, new: str, key: str, said: str) -> Mistake:
 
 
 UNDECIDED = (
+    Undecided(LOW_BOX, "a box that reaches below the arm's feet: it may stand on a pedestal"),
     Undecided(
         deck(
             "max_iterations = 10",
@@ -61,13 +63,14 @@ UNDECIDED = (
         "another board than the calibration's: it may be a new one",
     ),
     Undecided(
-        deck(
-            "flange_T_sensor = [0.0, 0.0, 60.0, 0.0, 0.0, 0.0]",
-            "flange_T_sensor = [0.0, 0.0, 60.0, 90.0, 0.0, 0.0]",
-            "robots.main.load",
-            "flange_T_sensor may be turned",
+        Mistake(
+            "insertion-connector.toml",
+            "flange_T_sensor = [0.0, 0.0, 30.0, 0.0,",
+            "flange_T_sensor = [0.0, 0.0, 30.0, 90.0,",
+            "force_sensors.force.flange_T_sensor",
+            "",
         ),
-        "a sensor turned about its axis: only a weighing shows it, or the load is another one",
+        "a sensor turned about its axis, where no load is weighed: only a push by hand shows it",
     ),
     Undecided(
         deck(

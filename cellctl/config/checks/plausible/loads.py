@@ -22,6 +22,25 @@ def load_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
             yield from _behind(f"robots.{name}.load.com_mm", robot.load)
             yield from _weight(cell, name, robot.load)
             yield from _straight(cell, name, robot.load)
+    yield from _on_another_arm(cell)
+
+
+def _on_another_arm(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """A load of an arm without a force sensor, where the arm that has one has none.
+
+    The load that is weighed is compared with that of the arm which carries the sensor. Written for
+    another arm it would be compared with nothing, and that arm would be told a load that it lacks.
+    """
+    weighing = {sensor.mounted_on: name for name, sensor in cell.force_sensors.items()}
+    without = [robot for robot in weighing if robot in cell.robots and not cell.robots[robot].load]
+    for name, robot in cell.robots.items():
+        if without and robot.load is not None and name not in weighing:
+            meant = without[0]
+            allowed = (
+                f"did you mean robots.{meant}.load? force_sensors.{weighing[meant]} weighs what "
+                f"{meant} carries, and no load is stated there; state both where both carry one"
+            )
+            yield ConfigIssue(f"robots.{name}.load", f"{robot.load.mass_kg:g} kg", allowed)
 
 
 def _tolerances(path: str, load: LoadConfig) -> Iterator[ConfigIssue]:

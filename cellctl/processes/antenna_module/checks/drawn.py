@@ -3,12 +3,20 @@
 from collections.abc import Iterator
 from pathlib import Path
 
-from cellctl.config.checks.bound import Bound
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.cell import CellConfig
+from cellctl.config.checks.bound import Bound, bound_issues
+from cellctl.config.checks.plausible.loads import G_M_S2
+from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM
+from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.drawings import read_drawings
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.roles import FORCE
 from cellctl.processes.antenna_module.settings import ReferenceSection
+
+_MOST_PER_CONTACT_N = 7.0
+"""Twice what makers of D-subs to DIN 41652 state: 50 N for 15 contacts. Micro-Ds to MIL-DTL-83513
+take 2.78 N a contact."""
 
 
 def contact_bounds(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[Bound]:
@@ -29,3 +37,41 @@ def one_file_twice(
     if reference is not None and reference.plate_above == reference.plate_below:
         allowed = "the dots as camera II sees them; plate_above names this file, too"
         yield ConfigIssue(f"{where}.reference.plate_below", repr(reference.plate_below), allowed)
+
+
+def force_issues(
+    cell: CellConfig, recipe: AntennaRecipe, key: str, folder: Path
+) -> Iterator[ConfigIssue]:
+    """Forces of a plugging that no such contacts take, that the sensor does not measure, or that
+    the drawings of plug and socket have otherwise."""
+    drawings = read_drawings(recipe, folder)
+    found = [
+        *bound_issues([_force_bound(cell, recipe, f"{key}.plug", drawings.plug)]),
+        *bound_issues([_force_bound(cell, recipe, f"{key}.socket", drawings.socket)]),
+    ]
+    yield from found
+    plug_n, socket_n = list(drawings.plug.force_n), list(drawings.socket.force_n)
+    if plug_n != socket_n and not found:
+        allowed = f"force_n as in {recipe.socket}, {socket_n}: one connection has one force"
+        against = (WrittenValue(f"{key}.socket", f"{recipe.socket!r}, force_n = {socket_n}"),)
+        value = f"{recipe.plug!r}, force_n = {plug_n}"
+        yield ConfigIssue(f"{key}.plug", value, allowed, against=against)
+
+
+def _force_bound(cell: CellConfig, recipe: AntennaRecipe, key: str, connector: Connector) -> Bound:
+    name, count = recipe.device(FORCE), len(connector.contacts)
+    most_n = _MOST_PER_CONTACT_N * count
+    why = (
+        f"greatest force_n of {connector.name}, {_MOST_PER_CONTACT_N:g} N for each of its {count} "
+        "contacts: a pin that stubs would be pushed with what all of them take"
+    )
+    measuring = cell.force_sensors[name].settings.get("range")
+    if isinstance(measuring, list) and len(measuring) == 6:
+        clips_n = min(measuring[:3]) - recipe.module_mass_kg * G_M_S2
+        if clips_n < most_n:
+            most_n = clips_n
+            why = (
+                f"greatest force_n of {connector.name}, the range of force_sensors.{name} less the "
+                "weight of the module: more is neither measured nor stopped at"
+            )
+    return Bound(key, connector.force_n[1], why, most=most_n)

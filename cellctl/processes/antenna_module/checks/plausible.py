@@ -11,7 +11,11 @@ from cellctl.config.checks.flange_places import flange_place_issues
 from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import pose_from_xyzabc
-from cellctl.processes.antenna_module.checks.drawn import contact_bounds, one_file_twice
+from cellctl.processes.antenna_module.checks.drawn import (
+    contact_bounds,
+    force_issues,
+    one_file_twice,
+)
 from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds
 from cellctl.processes.antenna_module.checks.looks import OVER, look_issues
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
@@ -30,6 +34,7 @@ def plausible_issues(
     where = f"processes.{recipe.process}"
     yield from one_file_twice(recipe, key, settings.reference, where)
     yield from bound_issues(contact_bounds(recipe, key, folder))
+    yield from force_issues(cell, recipe, key, folder)
     yield from bound_issues(arm_bounds(cell, arm, settings, where))
     yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_plug))
     yield from bound_issues(board_bounds(cell, settings, where, folder))

@@ -5,9 +5,11 @@ from pathlib import Path
 from typing import cast
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.plausible.loop import soft_arm
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from cellctl.processes.peg_in_hole.roles import ARM
 from cellctl.processes.peg_in_hole.settings import PegSettings
 
 _WIDE_MM, _WIDE_SHARE = 0.1, 0.02
@@ -37,3 +39,4 @@ def recipe_remarks(
         said = "nothing is called inserted without it: measure at which force the part slips"
         yield ConfigIssue(f"{key}.seat.grip_n", "(missing)", said)
     yield from soft_arm(cell, recipe, settings, folder)
+    yield from tool_floor_remarks(cell, recipe.device(ARM), recipe.flange_T_tip)

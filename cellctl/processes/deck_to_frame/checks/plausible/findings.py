@@ -18,6 +18,7 @@ from cellctl.processes.deck_to_frame.checks.plausible.sigmas import sigma_bounds
 from cellctl.processes.deck_to_frame.checks.plausible.station import station_issues
 from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_issues
 from cellctl.processes.deck_to_frame.checks.plausible.zones import zone_use_issues
+from cellctl.processes.deck_to_frame.checks.turned_sensor import turned_sensor_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import FORCE
 from cellctl.processes.deck_to_frame.settings import DeckSettings
@@ -48,6 +49,7 @@ def plausible_issues(
     yield from loads
     yield from station_issues(cell, recipe, key)
     yield from zone_use_issues(cell, recipe, settings)
+    yield from turned_sensor_issues(cell, recipe, folder)
     named = {issue.key for issue in loads}
     yield from (one for one in stored_issues(cell, recipe, key, folder) if one.key not in named)
     deck, frame = read_drawings(recipe, key, folder)

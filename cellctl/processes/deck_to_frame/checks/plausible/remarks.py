@@ -7,6 +7,7 @@ from typing import cast
 import numpy as np
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing, read_drawings
@@ -38,6 +39,7 @@ def recipe_remarks(
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
     yield from _taught_again(cell, recipe, folder)
+    yield from tool_floor_remarks(cell, recipe.device(MAIN), recipe.flange_T_deck)
 
 
 def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:

@@ -1,0 +1,137 @@
+"""Whether zones hold the main arm off the heads that measure over its station.
+
+A run brings main arm and heads together on purpose, straight over the frame. What a zone is for is
+beside the station: there procedure 103 swings the main arm, which comes home from there after an
+abort as well, and a head that was left at its measuring pose stands in the way.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellctl.config.cell import CellConfig
+from cellctl.config.checks.zones import taught_in_zone
+from cellctl.config.driver_settings import robot_driver
+from cellctl.config.issue import ConfigIssue
+from cellctl.config.zones import ZoneConfig
+from cellctl.geometry.box import Box
+from cellctl.geometry.joint_path import joint_path
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, HOME, MAIN, MEASURING
+from cellctl.processes.deck_to_frame.settings import DeckSettings
+
+_SIDES = (-1.0, 1.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Station:
+    """The arms of a recipe over their station."""
+
+    cell: CellConfig
+    main: str
+    middle_m: Array
+    """Of the frame, x and y in the base of the main arm, shape (2,)."""
+    turns_m: Array
+    """Places of the main arm's flange beside the station, shape (n, 3); none without kinematics."""
+    bases: Mapping[str, Sequence[float]]
+
+    def head_m(self, carrier: str) -> Array | None:
+        """The flange of a head's arm at its measuring pose, in the base of the main arm."""
+        driver, settings = robot_driver(self.cell.robots[carrier])
+        kinematics = driver.forward_kinematics(settings)
+        if kinematics is None or not {self.main, carrier} <= self.bases.keys():
+            return None
+        main_T_other = pose_from_xyzabc(self.bases[self.main]).inv() * pose_from_xyzabc(
+            self.bases[carrier]
+        )
+        joints_rad = np.radians(self.cell.robots[carrier].poses_deg[MEASURING])
+        return np.asarray((main_T_other * kinematics(joints_rad)).translation)
+
+
+def shared_zone_issues(
+    cell: CellConfig,
+    recipe: DeckRecipe,
+    settings: DeckSettings,
+    bases: Mapping[str, Sequence[float]],
+) -> Iterator[ConfigIssue]:
+    """Heads that share no zone with the main arm, or one whose boxes leave a way between.
+
+    ``bases`` holds ``cell_T_base`` in its written form by robot, empty without a model of the cell.
+    """
+    main = recipe.device(MAIN)
+    middle_m = np.array(recipe.base_T_frame[:2]) * MM
+    station = _Station(cell, main, middle_m, _turns_m(cell, main, settings), bases)
+    for role in (HEAD_1, HEAD_2):
+        carrier = cell.stereo_cameras[recipe.device(role)].carried_by or ""
+        shared = {
+            name: zone
+            for name, zone in cell.zones.items()
+            if main in zone.robots and carrier in zone.robots
+        }
+        held = {
+            name: zone
+            for name, zone in shared.items()
+            if MEASURING in taught_in_zone(cell.robots[carrier], zone.robots[carrier])
+        }
+        if not shared:
+            allowed = (
+                f"a zone that names both: procedure 103 swings {main} to where {carrier} stands "
+                "while it measures, and nothing else keeps them apart"
+            )
+            yield ConfigIssue(f"robots.{carrier}", f"in no zone with {main}", allowed)
+        elif not held:
+            allowed = f"a box that holds its pose {MEASURING}, at which it stands over the station"
+            yield _box_issue(shared, carrier, allowed)
+        else:
+            yield from _left_out(station, carrier, held)
+
+
+def _left_out(
+    station: _Station, carrier: str, zones: Mapping[str, ZoneConfig]
+) -> Iterator[ConfigIssue]:
+    """The first place beside a head to which the main arm turns outside of its boxes."""
+    head_m, main = station.head_m(carrier), station.main
+    if head_m is None or not len(station.turns_m):
+        return
+    way_m = head_m[:2] - station.middle_m
+    # As far from the station as the head's own flange: from there on the arms are side by side.
+    far = (station.turns_m[:, :2] - station.middle_m) @ way_m >= way_m @ way_m
+    boxes = [
+        Box.from_mm(zone.robots[main].min_mm, zone.robots[main].max_mm) for zone in zones.values()
+    ]
+    for place_m in station.turns_m[far]:
+        if not any(box.holds(place_m) for box in boxes):
+            x, y, z = place_m / MM
+            allowed = (
+                f"a box that holds x {x:.0f}, y {y:.0f}, z {z:.0f} mm, to where procedure 103 and "
+                f"the way home from it bring the flange beside {carrier} at its pose {MEASURING} "
+                "(by cell_T_base of the model); or the zone is for another arm"
+            )
+            yield _box_issue(zones, main, allowed)
+            return
+
+
+def _box_issue(zones: Mapping[str, ZoneConfig], robot: str, allowed: str) -> ConfigIssue:
+    name, zone = next(iter(zones.items()))
+    share = zone.robots[robot]
+    value = f"{list(share.min_mm)} to {list(share.max_mm)}"
+    return ConfigIssue(f"zones.{name}.robots.{robot}", value, allowed)
+
+
+def _turns_m(cell: CellConfig, main: str, settings: DeckSettings) -> Array:
+    """The flange on the arc of A1 in procedure 103 and on the ways home from both of its ends."""
+    driver, driver_settings = robot_driver(cell.robots[main])
+    kinematics = driver.forward_kinematics(driver_settings)
+    if kinematics is None:
+        return np.empty((0, 3))
+    middle_rad = np.radians(settings.base_frame_joints_deg)
+    home_rad = np.radians(cell.robots[main].poses_deg[HOME])
+    half_rad = np.radians(settings.circle_arc_deg / 2.0) * np.eye(6)[0]
+    ways_rad = [
+        joint_path(start_rad, middle_rad + side * half_rad)
+        for side in _SIDES
+        for start_rad in (middle_rad, home_rad)
+    ]
+    return np.array([kinematics(one).translation for one in np.vstack(ways_rad)])
