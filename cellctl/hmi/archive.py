@@ -10,6 +10,7 @@ from typing import Any, TypeVar
 
 from cellctl.records.entered.gauges import judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
+from cellctl.records.figures import verdicts
 from cellctl.records.outcome import outcome
 from cellctl.records.run_filter import RunFilter
 from cellctl.records.run_list import ListedRun, listed_runs
@@ -42,6 +43,7 @@ class ArchiveReader:
 
         def read(store: RunStore) -> dict[str, Any]:
             record = store.run(number)
+            said = verdicts(record.newest_figures)
             gauges = [
                 _plain(asdict(gauge))
                 | {"verdict": str(judge_gauge(record, gauge)), "counts": gauge in record.gauges}
@@ -50,7 +52,10 @@ class ArchiveReader:
             return {
                 "head": _head(record.head),
                 "part": part_verdict(record),
-                "figures": [_plain(asdict(one)) for one in record.newest_figures.values()],
+                "figures": [
+                    _plain(asdict(one)) | {"verdict": said.get(one.key)}
+                    for one in record.newest_figures.values()
+                ],
                 "passes": [_plain(asdict(one)) for one in record.passes],
                 "phases": [_plain(asdict(one)) for one in record.phases],
                 "alarms": [_plain(asdict(one)) for one in record.alarms],

@@ -30,6 +30,36 @@ class Limit:
 
 
 NO_LIMIT = Limit()
+KNOWN_TO = "_known_to"
+"""Ends the key of the expanded uncertainty of a figure whose limit is not narrowed by it."""
+NOT_DECIDED = "not decided"
+
+
+def is_undecided(value: float | None, limit: Limit, expanded: float | None) -> bool:
+    """Whether a value within its limit lies in the range of uncertainty about it, where neither
+    conformity nor the opposite is proven (ISO 14253-1).
+
+    ``expanded`` is its expanded uncertainty; None where none was evaluated, and the limit decides.
+    """
+    if value is None or expanded is None or limit.judge(value) is not Verdict.PASS:
+        return False
+    bounds = (bound for bound in (limit.lower, limit.upper) if bound is not None)
+    return any(abs(bound - value) < expanded for bound in bounds)
+
+
+def verdicts(figures: Mapping[str, Figure]) -> Mapping[str, str]:
+    """The verdict on each figure with a limit, in words, by their keys."""
+    return {
+        key: NOT_DECIDED
+        if is_undecided(
+            entry.value,
+            Limit(entry.lower, entry.upper),
+            known.value if (known := figures.get(f"{key}{KNOWN_TO}")) is not None else None,
+        )
+        else str(entry.verdict)
+        for key, entry in figures.items()
+        if entry.verdict is not None
+    }
 
 
 def figure(

@@ -1,6 +1,6 @@
 """Runs as people and programs read them on a terminal: lists, and one run in figures."""
 
-from collections.abc import Sequence, Set
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import asdict
 
 import typer
@@ -12,7 +12,7 @@ from cellctl.records.entered.gauges import gauge_limits, judge_gauge, part_verdi
 from cellctl.records.entered.notes import note_words, notes_of
 from cellctl.records.entered.said_by import gauge_entries, measured_by, said_by
 from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
-from cellctl.records.figures import NO_LIMIT
+from cellctl.records.figures import NO_LIMIT, verdicts
 from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.acceptance.faults import fault_box
 from cellctl.records.report.acceptance.timeline import during
@@ -20,6 +20,7 @@ from cellctl.records.report.text import decimals, duration, fixed, number, quant
 
 WIDE = 100
 """Columns from which on the list has the name of the process."""
+_VERDICTS = {str(Verdict.PASS): "green", str(Verdict.FAIL): "red"}
 _COLOURS = {"open": "yellow", **dict.fromkeys(GOOD_ENDS, "green")}
 
 
@@ -40,7 +41,7 @@ def show_record(record: RunRecord, audit: Sequence[AuditEntry], *, as_json: bool
         console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
     judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
     if judged:
-        console.print(_figures(judged))
+        console.print(_figures(judged, verdicts(record.newest_figures)))
     for gauge in record.gauge_history:
         console.print(gauge_line(record, gauge, entered), markup=False)
     if part_verdict(record) != record.head.result:
@@ -111,10 +112,11 @@ def _passes(passes: Sequence[LoopPass]) -> Table:
     return table
 
 
-def _figures(judged: Sequence[Figure]) -> Table:
+def _figures(judged: Sequence[Figure], said: Mapping[str, str]) -> Table:
     table = Table("figure", "value", "at least", "at most", "verdict", box=None)
     for entry in judged:
         texts = (quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper))
-        style = "green" if entry.verdict is Verdict.PASS else "red"
-        table.add_row(entry.label, *texts, f"[{style}]{entry.verdict}[/]")
+        verdict = said[entry.key]
+        style = _VERDICTS.get(verdict, "yellow")
+        table.add_row(entry.label, *texts, f"[{style}]{verdict}[/]")
     return table

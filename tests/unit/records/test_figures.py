@@ -5,7 +5,7 @@ import math
 import pytest
 
 from cellctl.records.entries import Verdict
-from cellctl.records.figures import Limit, figure, split_document
+from cellctl.records.figures import KNOWN_TO, Limit, figure, split_document, verdicts
 
 
 @pytest.mark.parametrize(
@@ -30,6 +30,25 @@ def test_a_limit_judges(limit: Limit, value: float | None, verdict: Verdict | No
     assert found.verdict is verdict
     assert (found.lower, found.upper) == (limit.lower, limit.upper)
     assert found.value is None or math.isfinite(found.value)
+
+
+@pytest.mark.parametrize(
+    ("value", "known_to", "said"),
+    [
+        (0.002, 0.003, "pass"),
+        (0.004, 0.003, "not decided"),
+        (0.007, 0.003, "fail"),
+        (0.001, 0.008, "not decided"),
+        (0.004, None, "pass"),
+    ],
+)
+def test_a_figure_within_its_limit_by_less_than_it_is_known_to_is_not_decided(
+    value: float, known_to: float | None, said: str
+) -> None:
+    found = [figure("angle", value, "°", limit=Limit(upper=0.006)), figure("speed", 1.0, "mm/s")]
+    if known_to is not None:
+        found.append(figure(f"angle{KNOWN_TO}", known_to, "°"))
+    assert verdicts({one.key: one for one in found}) == {"angle": said}
 
 
 def test_the_key_says_what_it_is_where_there_is_no_label() -> None:

@@ -1,6 +1,6 @@
 """Measurements and passes of the loop as entries of the record, in mm, µm and degrees."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -22,8 +22,9 @@ from cellctl.processes.deck_to_frame.record.keys import (
     UNCERTAINTY,
     WORST_RESIDUAL,
 )
+from cellctl.processes.deck_to_frame.record.worst_component import expanded, worst_component
 from cellctl.records.entries import Figure, LoopPass, PassComponent
-from cellctl.records.figures import Limit, figure
+from cellctl.records.figures import KNOWN_TO, Limit, figure
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.chi_square import ChiSquare
 from cellctl.vision.registration.part_pose import RESIDUAL_LIMIT_M
@@ -57,21 +58,18 @@ def loop_pass(
 
 
 def error_figures(entry: LoopPass) -> tuple[Figure, ...]:
-    """Position and angle about the axis that uses up most of its threshold."""
+    """Position and angle about the axis that uses up most of its threshold, and how well they are
+    known."""
     return (
-        _worst(POSITION_ERROR, entry.components[:3]),
-        _worst(ANGLE_ERROR, entry.components[3:]),
+        *_worst(POSITION_ERROR, worst_component(entry.components[:3])),
+        *_worst(ANGLE_ERROR, worst_component(entry.components[3:])),
     )
 
 
-def _worst(key: str, components: tuple[PassComponent, ...]) -> Figure:
-    values = np.abs(np.array([component.value for component in components], dtype=float))
-    limits = np.array([component.limit for component in components], dtype=float)
-    # The place of the greatest is that of the first that is not a number, if there is one: an
-    # unknown component must not hide behind those that are known.
-    worst = int(np.argmax(values / limits))
-    upper = Limit(upper=float(limits[worst]))
-    return figure(key, float(values[worst]), components[worst].unit, limit=upper)
+def _worst(key: str, worst: PassComponent) -> Iterator[Figure]:
+    size = None if worst.value is None else abs(worst.value)
+    yield figure(key, size, worst.unit, limit=Limit(upper=worst.limit))
+    yield figure(f"{key}{KNOWN_TO}", expanded(worst), worst.unit)
 
 
 def rms_um(measured: PartMeasurement) -> float:

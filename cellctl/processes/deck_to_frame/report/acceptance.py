@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator, Mapping
 
-from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.processes.deck_to_frame.record import keys
+from cellctl.processes.deck_to_frame.record.worst_component import expanded, worst_component
 from cellctl.records.entries import RunRecord
+from cellctl.records.figures import KNOWN_TO
 from cellctl.records.parts import mate_serial
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
@@ -52,6 +53,8 @@ _WORDS = {
     "creep_steps": "steps from touch to seating force",
     "stiffness": "contact stiffness measured",
     "duration": "duration of the mating",
+    f"{keys.POSITION_ERROR}{KNOWN_TO}": "before mating: expanded uncertainty of the position error",
+    f"{keys.ANGLE_ERROR}{KNOWN_TO}": "before mating: expanded uncertainty of the angle error",
     **{f"seated_error.{axis}": f"seated deck: error along {axis} of the frame" for axis in "xyz"},
     **{
         f"seated_error.r{axis}": f"seated deck: rotation about {axis} of the frame"
@@ -92,7 +95,8 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
         RequirementGroup(
             "Deck at the stand-off, before mating",
             tuple(_before_mating(record)),
-            "worst axis of the last pass, in the axes of the frame",
+            "worst axis of the last pass, in the axes of the frame; ends the correction and is no "
+            "requirement on the part",
         ),
         RequirementGroup(
             "Measurements",
@@ -138,13 +142,11 @@ def _before_mating(record: RunRecord) -> Iterator[Requirement]:
 
 
 def _expanded(record: RunRecord, part: slice) -> float | None:
-    """Expanded uncertainty of the component that is known least: which of them is the worst may be
-    chance."""
+    """Expanded uncertainty of the component that the row shows; from the pass, because runs of
+    earlier versions have no figure of it."""
     if not record.passes:
         return None
-    sigmas = [component.sigma for component in record.passes[-1].components[part]]
-    known = [sigma for sigma in sigmas if sigma is not None]
-    return COVERAGE_FACTOR * max(known) if len(known) == len(sigmas) else None
+    return expanded(worst_component(record.passes[-1].components[part]))
 
 
 def _found(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.records.entered.gauges import gauge_limits, judge_gauge
 from cellctl.records.entries import RunRecord, Verdict
-from cellctl.records.figures import NO_LIMIT, Limit
+from cellctl.records.figures import NO_LIMIT, NOT_DECIDED, Limit, is_undecided
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
@@ -28,9 +28,10 @@ _LEGEND = (
     f"U: expanded uncertainty, coverage factor k = {COVERAGE_FACTOR:g}, level of confidence about "
     "95 % (JCGM 100): the value is known to ± U. Where a row has an accepted range, it is the "
     "required one less U, and the measured value must lie in it (JCGM 106, guarded acceptance). "
-    "Rows without an accepted range are judged by the required range alone, marked "
-    "(< U) where the margin is below U; a dash as U means that "
-    "no uncertainty was evaluated for that value."
+    "A row without an accepted range is judged by the required one alone, and not decided where "
+    "its value lies within that by less than U (ISO 14253-1). A dash as U means that no "
+    "uncertainty was evaluated. Plug gauges are optional and entered by hand after a run; one that "
+    "does not conform makes the part a bad one."
 )
 _VERDICTS = {
     Verdict.PASS: ("✓ conforms", RowMark.GOOD),
@@ -83,19 +84,18 @@ def _rounded(value: float | None, unit: str, places: int | None) -> str:
 
 def _verdict(entry: Requirement) -> tuple[str, RowMark]:
     if entry.verdict is None:
-        return ("not measured" if entry.value is None else "no limit known"), RowMark.NONE
-    text, mark = _VERDICTS[entry.verdict]
-    return (f"{text} (< U)" if _closer_than_u(entry) else text), mark
+        return ("optional, not entered" if entry.value is None else "no limit known"), RowMark.NONE
+    if entry.accepted == NO_LIMIT and is_undecided(entry.value, entry.required, entry.expanded):
+        return f"? {NOT_DECIDED}: {_too_wide(entry)}", RowMark.NONE
+    return _VERDICTS[entry.verdict]
 
 
-def _closer_than_u(entry: Requirement) -> bool:
-    """Whether a row that is judged without a guard band conforms by less than its uncertainty."""
-    if entry.verdict is not Verdict.PASS or entry.accepted != NO_LIMIT:
-        return False
-    bounds = (bound for bound in (entry.required.lower, entry.required.upper) if bound is not None)
-    if entry.value is None or entry.expanded is None:
-        return False
-    return any(abs(bound - entry.value) < entry.expanded for bound in bounds)
+def _too_wide(entry: Requirement) -> str:
+    """What an undecided value is known too badly for."""
+    bounds = [bound for bound in (entry.required.lower, entry.required.upper) if bound is not None]
+    # A magnitude has one limit, and a deviation two: nothing within U of both could be decided.
+    room = abs(bounds[0]) if len(bounds) == 1 else (bounds[1] - bounds[0]) / 2.0
+    return "U > limit" if (entry.expanded or 0.0) > room else "U > margin"
 
 
 def limit_text(limit: Limit, unit: str, places: int | None = None) -> str:
@@ -119,7 +119,7 @@ def _gauges(record: RunRecord) -> Iterator[RequirementGroup]:
     newest = {gauge.hole: gauge for gauge in record.gauges}
     names = dict.fromkeys((*limits, *newest))
     rows = (_gauge(record, name, limits.get(name, NO_LIMIT)) for name in names)
-    note = "largest plug gauge that passes; entered by hand"
+    note = "largest plug gauge that passes; optional, entered by hand after the run"
     yield RequirementGroup("Plug gauges", tuple(rows), note)
 
 

@@ -13,6 +13,7 @@ from cellctl.cli.records.runs import app
 from cellctl.errors.records import RunUnknown, StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entered.said_by import gauge_entries, measured_by
+from cellctl.records.figures import KNOWN_TO, Limit, figure
 from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run
 
@@ -59,6 +60,19 @@ def test_one_run_in_figures(runner: CliRunner, folder: str) -> None:
     assert "+1.2143" in result.stdout
     assert re.search(r"peak force\s+38.4 N\s+–\s+50 N\s+pass", result.stdout)
     assert "gauge 5.95 mm (simulator)" in result.stdout
+
+
+def test_a_figure_that_its_uncertainty_leaves_open_is_not_called_a_pass(
+    runner: CliRunner, store: RunStore
+) -> None:
+    run = start(store)
+    store.add(
+        run,
+        figure("angle_error", 0.004, "°", limit=Limit(upper=0.006)),
+        figure(f"angle_error{KNOWN_TO}", 0.0031, "°"),
+    )
+    shown = runner.invoke(app, ["show", str(run), "--data-dir", str(store.path)]).stdout
+    assert re.search(r"angle error\s+0.004°\s+–\s+0.006°\s+not decided", shown)
 
 
 def test_a_run_is_exported(runner: CliRunner, folder: str, tmp_path: Path) -> None:

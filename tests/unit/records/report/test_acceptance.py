@@ -102,7 +102,7 @@ def test_holes_that_nobody_has_gauged_are_listed(store: RunStore) -> None:
     verdicts = {row[0]: row[5] for row in rows_of(store.run(run))[1:]}
     assert verdicts == {
         "gauge through hole P1": "✗ does not conform",
-        "gauge through hole P5": "not measured",
+        "gauge through hole P5": "optional, not entered",
     }
 
 
@@ -118,20 +118,33 @@ def test_a_figure_without_a_limit_is_no_requirement(store: RunStore) -> None:
 @pytest.mark.parametrize(
     ("value", "accepted", "verdict"),
     [
-        (0.0021, NO_LIMIT, "✓ conforms (< U)"),
+        (0.0021, NO_LIMIT, "? not decided: U > margin"),
         (0.0005, NO_LIMIT, "✓ conforms"),
+        (0.0051, NO_LIMIT, "✗ does not conform"),
         (0.0021, Limit(upper=0.003), "✓ conforms"),
     ],
 )
-def test_a_row_whose_margin_is_below_its_uncertainty_says_so(
+def test_a_row_whose_margin_is_below_its_uncertainty_is_not_decided(
     store: RunStore, value: float, accepted: Limit, verdict: str
 ) -> None:
     limit = Limit(upper=0.005)
     entry = Requirement(
-        "angle", value, "°", limit, Verdict.PASS, expanded=0.0042, accepted=accepted
+        "angle", value, "°", limit, limit.judge(value), expanded=0.0042, accepted=accepted
     )
     rows = rows_of(store.run(start(store)), RequirementGroup("Group", (entry,)))
     assert rows[1][5] == verdict
+
+
+@pytest.mark.parametrize("limit", [Limit(upper=0.006), Limit(-0.006, 0.006)])
+def test_no_value_conforms_that_is_known_worse_than_its_limit(
+    store: RunStore, limit: Limit
+) -> None:
+    entry = Requirement("angle", 0.001, "°", limit, Verdict.PASS, expanded=0.008)
+    record = store.run(start(store))
+    table = acceptance(record, (RequirementGroup("Group", (entry,)),)).blocks[0]
+    assert isinstance(table, ReportTable)
+    row = table.rows[1]
+    assert (row.cells[5].text, row.mark) == ("? not decided: U > limit", RowMark.NONE)
 
 
 def test_a_value_without_a_limit_is_not_called_unmeasured(store: RunStore) -> None:
