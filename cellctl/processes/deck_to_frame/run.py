@@ -13,10 +13,15 @@ from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.errors import CellError
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
-from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement, PartMeasurer
+from cellctl.processes.deck_to_frame.poses.part_measurer import (
+    HeadGeometry,
+    PartMeasurement,
+    PartMeasurer,
+)
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.deck_recorder import DeckRecorder
+from cellctl.processes.deck_to_frame.record.failed_picture import expected_rims
 from cellctl.processes.deck_to_frame.record.keys import DECK, FRAME
 from cellctl.processes.deck_to_frame.run_facts import RunFacts
 from cellctl.processes.deck_to_frame.stations import DeckCell
@@ -147,7 +152,11 @@ class AssemblyRun:
         """Keep what the heads saw of a measurement that failed; no fault hides the first one."""
         part = FRAME if features is self.facts.frame_features else DECK
         try:
-            await self.recorder.failed_measurement(part, c1_T_part, self.measurer.seen, fault)
+            heads = HeadGeometry.of(self.facts.geometry, self.recipe.pose_correction)
+            expected = expected_rims(features, c1_T_part, heads)
+            await self.recorder.failed_measurement(
+                part, c1_T_part, self.measurer.seen, fault, expected
+            )
         except CellError as second:
             fault.add_note(f"images not kept: {second}")
             _log.error("images not kept", fault=str(second))

@@ -65,6 +65,8 @@ class SeenPair:
     head: int
     """1 or 2."""
     pair: StereoPair
+    found: PairMeasurement | None = None
+    """The holes that were measured in it; None where that failed or was not tried."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +209,8 @@ class PartMeasurer:
         # Before anything is looked for: what is not found must be seen in the record.
         head = self._cell.heads.index(station) + 1
         frame = 1 + sum(one.head == head for one in self.seen)
-        self.seen.append(SeenPair(frame, head, pair))
+        place, seen = len(self.seen), SeenPair(frame, head, pair)
+        self.seen.append(seen)
         found = await self._cell.workers.run(
             measure_pair,
             pair.left,
@@ -217,6 +220,7 @@ class PartMeasurer:
             camera_T_part=camera_T_part,
             method=self._method,
         )
+        self.seen[place] = replace(seen, found=found)
         return pair, found
 
     def _combine(

@@ -15,6 +15,7 @@ from cellctl.errors import CellError
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.result import MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
@@ -31,6 +32,11 @@ from cellctl.processes.deck_to_frame.record.entries import (
     rms_um,
     seat_limits_of,
     seat_record,
+)
+from cellctl.processes.deck_to_frame.record.failed_picture import (
+    JPEG_QUALITY,
+    Expected,
+    draw_failed,
 )
 from cellctl.processes.deck_to_frame.record.keys import (
     BASE,
@@ -69,11 +75,9 @@ from cellctl.records.files.mcap_reading import MEDIA_TYPE
 from cellctl.records.looks import documents_of_look
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.measurement import PairMeasurement
+from cellctl.vision.measurement import PairMeasurement, Side
 from cellctl.vision.picture import annotate
 from cellctl.workers import VisionWorkers
-
-JPEG_QUALITY = 85
 
 
 @dataclass(slots=True)
@@ -111,9 +115,15 @@ class DeckRecorder:
         await self._images(kind, measured)
 
     async def failed_measurement(
-        self, part: str, predicted: RigidTransform, seen: Sequence[SeenPair], fault: CellError
+        self,
+        part: str,
+        predicted: RigidTransform,
+        seen: Sequence[SeenPair],
+        fault: CellError,
+        expected: Expected,
     ) -> None:
-        """The images of a measurement that ended with a fault; of one without any, nothing."""
+        """The images of a measurement that ended with a fault, and the last of each head as
+        pictures; of one without any, nothing."""
         if not seen:
             return
         name = self._new_name(f"{FAILED}-{part}")
@@ -124,6 +134,18 @@ class DeckRecorder:
         await self.recorder.add(*documents_of_look(name, seen_taken(name, seen), {}))
         for file, image in images.items():
             self.recorder.raw_image(file, image)
+        last = {one.head: one for one in seen}
+        for head, one in sorted(last.items()):
+            images_of: tuple[tuple[Side, Image], ...] = (
+                ("left", one.pair.left),
+                ("right", one.pair.right),
+            )
+            for side, image in images_of:
+                rims_there = expected[head, side]
+                data = await self.workers.run(
+                    draw_failed, image, rims_there, one.found, side, fault.number
+                )
+                await self.recorder.artefact(f"{name}-head-{head}-{side}.jpg", data, "image/jpeg")
 
     async def deck_on_flange(self, flange_T_deck: UncertainPose) -> None:
         """The deck's pose on the flange (eq. 4)."""

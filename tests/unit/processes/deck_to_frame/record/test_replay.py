@@ -148,6 +148,8 @@ async def test_the_images_of_a_measurement_that_failed_are_looked_at_again(
     assert images == [
         f"raw/failed-frame-frame-1-head-2-{side}.pgm.zst" for side in ("left", "right")
     ]
+    pictures = [one.name for one in record.artefacts if one.media_type == "image/jpeg"]
+    assert pictures == [f"failed-frame-head-2-{side}.jpg" for side in ("left", "right")]
     exit_code, said = await replay(daemon_rig, "--every")
     assert exit_code == code, said
     assert "failed-frame" in said
