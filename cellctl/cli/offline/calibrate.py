@@ -27,7 +27,10 @@ from cellctl.calibration.solvers.tool.tool_mistakes import tool_mistakes
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.calibration.solvers.transfer.board_transfer import calibrate_board_transfer
 from cellctl.calibration.solvers.transfer.transfer_input import TransferFile
-from cellctl.calibration.solvers.transfer.transfer_mistakes import require_unmistaken
+from cellctl.calibration.solvers.transfer.transfer_mistakes import (
+    inverted_base,
+    require_unmistaken,
+)
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
 from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
@@ -150,9 +153,11 @@ def transfer(
     if_inverted = {name: data.c_T_base * data.c_T_base * place for name, place in places.items()}
     missing = "give --cell" if cell is None else compare_heads(file, cell, places, if_inverted)
     if missing is not None:
+        if (failed := inverted_base(places, if_inverted)) is not None:
+            result = replace(result, checks=(*result.checks, failed))
         console_of_figures().print(
-            "note: nothing here has checked which head is which, nor that c_T_base is not its "
-            f"inverse, base_T_c: {missing}",
+            "note: nothing here has checked which head is which, nor beyond doubt that c_T_base is "
+            f"not its inverse, base_T_c: {missing}",
             style="yellow",
             markup=False,
         )

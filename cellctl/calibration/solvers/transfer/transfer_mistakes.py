@@ -1,9 +1,11 @@
 """Readings of a board transfer that cannot be of the heads that they are written for."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
+from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.transfer.board_transfer import BoardPlacement
 from cellctl.errors.calibration import BoardPoseInvalid
 from cellctl.geometry.pose import MM, pose_error
@@ -36,6 +38,35 @@ def require_unmistaken(
                 raise BoardPoseInvalid(
                     f"{file}: head_1 and head_2 have the same readings of the board: one was copied"
                 )
+
+
+def inverted_base(
+    places: Mapping[str, RigidTransform], if_inverted: Mapping[str, RigidTransform]
+) -> LimitCheck | None:
+    """A failed check where only the inverse of c_T_base has the heads before the arm; else None.
+
+    ``places`` is base_T_head, ``if_inverted`` the same for a c_T_base that was written as base_T_c.
+    The robot works in front of its base and above the plane on which it stands, and so do the heads
+    that look at its part. An arm may be set up to work behind: the cell file tells.
+    """
+    written, inverse = (_least_before_m(one.values()) for one in (places, if_inverted))
+    if written >= 0.0 or inverse < 0.0 or _least_before_m(places.values(), every=False) >= 0.0:
+        return None
+    return LimitCheck(
+        "least x and z of the heads in the base (c_T_base may be its inverse, base_T_c: that has "
+        "both before the arm)",
+        written / MM,
+        0.0,
+        "mm",
+        side="min",
+    )
+
+
+def _least_before_m(places: Iterable[RigidTransform], *, every: bool = True) -> float:
+    """How far the worst of the places is in front of the base and above it; with ``every`` off, how
+    far the best of them is."""
+    each = [float(min(place.translation[[0, 2]])) for place in places]
+    return min(each) if every else max(each)
 
 
 def _distance_m(pose: UncertainPose) -> float:

@@ -302,12 +302,16 @@ def test_a_transfer_in_the_base_of_another_robot_is_named(tmp_path: Path) -> Non
     assert "is c_T_base of this robot" in str(result.exception)
 
 
-def test_an_inverted_base_of_a_transfer_is_named_with_the_cell_file(tmp_path: Path) -> None:
-    """Nothing in the file contradicts it: the note says so where no cell file is given."""
+def test_an_inverted_base_of_a_transfer_is_named(tmp_path: Path) -> None:
     data = json.loads(SAMPLE.read_text())
     data["c_T_base"] = written(pose_from_xyzabc(data["c_T_base"]).inv())
     file = save(tmp_path / "inverted.json", data)
-    assert "nor that c_T_base is not its inverse, base_T_c" in call("transfer", "--in", file).output
+    alone = call("transfer", "--in", file)
+    assert alone.exit_code == 3
+    assert (
+        "FAIL  least x and z of the heads in the base (c_T_base may be its inverse" in alone.output
+    )
+    assert "nor beyond doubt that c_T_base is not its inverse" in alone.output
     cell = ("--cell", SAMPLE.parents[1] / "deck.toml")
     result = call("transfer", "--in", file, *cell)
     assert isinstance(result.exception, FileInvalid)
