@@ -102,14 +102,18 @@ class StatusView:
                 continue  # a robot without a fresh state is reported as a fault, not as manual
         return False
 
-    def _force_guard_tripped(self) -> bool:
-        """Whether a trip is latched other than the touch that a step looks for.
+    def is_awaited_touch(self, sensor_name: str) -> bool:
+        """Whether the guard of a sensor has stopped its robot at the touch that a step looks for.
 
-        Every mating finds its touch, and a line that takes the bit for an alarm would have one with
-        every good part. A touch that nobody waits for, or waits for no more, is such a stop.
+        Every mating finds its touch, and whoever takes that for an alarm would have one with every
+        good part. A touch that nobody waits for, or waits for no more, is a trip.
         """
+        trip = self._cell.guards[sensor_name].trip
+        return trip is not None and trip.touch and self._awaits_trips(sensor_name)
+
+    def _force_guard_tripped(self) -> bool:
         return any(
-            guard.trip is not None and not (guard.trip.touch and self._awaits_trips(name))
+            guard.trip is not None and not self.is_awaited_touch(name)
             for name, guard in self._cell.guards.items()
         )
 

@@ -148,13 +148,16 @@ class LiveView:
         )
         # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
         shown = wrench if guard.in_part_frame else [math.nan] * 6
+        stopped = "" if guard.trip is None else str(guard.trip)
+        awaited = self._unit.view.is_awaited_touch(name)
         return {
             "sensor": name,
             "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
             "compensated": weighed,
             "limit_n": number(status.force_limit_n),
             "presses_n": _pressing_n(status.state, wrench),
-            "trip": "" if guard.trip is None else str(guard.trip),
+            "trip": "" if awaited else stopped,
+            "touch": stopped if awaited else "",
             "wrench": _limited(_WRENCH, shown),
             "peaks": [number(value) for value in status.force_peaks],
         }

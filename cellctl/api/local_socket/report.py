@@ -100,6 +100,8 @@ class StatusReport(StrictModel):
     """Not yet acknowledged, the oldest first."""
     guard_trip: str
     """The trip that the guard has latched; empty when there is none."""
+    guard_touch: str = ""
+    """The touch that a step looks for, at which the guard has stopped the robot; empty without."""
     links: dict[str, str]
     """Robots and guard by name; what is wrong with each, empty when it is well."""
     calibrations: tuple[CalibrationReport, ...]

@@ -63,7 +63,11 @@ class Reporter:
         unit, machine = self._unit, self._unit.machine
         shown = unit.view.snapshot(unit.jobs.shown, unit.jobs.shown_result, unit.parts)
         live = self._view.snapshot(shown)
-        trips = [guard.trip for guard in self._cell.guards.values() if guard.trip is not None]
+        stops: dict[bool, list[str]] = {True: [], False: []}
+        for name, guard in self._cell.guards.items():
+            if (trip := guard.trip) is not None:
+                said = f"{trip.reason.value}: {trip.detail}"
+                stops[unit.view.is_awaited_touch(name)].append(said)
         alive = self._arbiter.line_alive
         return StatusReport(
             cell=self._cell.config.name,
@@ -83,7 +87,8 @@ class Reporter:
             permitted={name: one["reason"] for name, one in live["permitted"].items()},
             faults=tuple(_fault(fault) for fault in machine.faults),
             alarms=tuple(_alarm(alarm) for alarm in unit.alarms.active),
-            guard_trip="; ".join(f"{trip.reason.value}: {trip.detail}" for trip in trips),
+            guard_trip="; ".join(stops[False]),
+            guard_touch="; ".join(stops[True]),
             links=live["links"],
             calibrations=calibrations,
             result=unit.jobs.result.name.lower(),

@@ -91,7 +91,7 @@ def _rows(report: StatusReport) -> list[tuple[str, Text]]:
         ("permitted", Text(", ".join(n for n, why in report.permitted.items() if not why) or "–")),
         *_measured(report),
         ("last run", Text(_last_run(report))),
-        ("guard", _well(report.guard_trip and f"stop requested: {report.guard_trip}")),
+        ("guard", _guard(report)),
         ("links", _links(report)),
     ]
     return [*rows, ("records", _well(report.records))] if report.records else rows
@@ -111,6 +111,12 @@ def pressing(report: StatusReport) -> tuple[str, ...]:
         for force in report.forces
         if force.presses_n is not None
     )
+
+
+def _guard(report: StatusReport) -> Text:
+    if report.guard_trip or not report.guard_touch:
+        return _well(report.guard_trip and f"stop requested: {report.guard_trip}")
+    return Text(f"good; stopped at the touch that the step looks for: {report.guard_touch}")
 
 
 def _step(report: StatusReport) -> str:

@@ -49,7 +49,8 @@ FORCE_PEAK = _gauge(
     "force_peak_newtons", "N", "greatest force of the present contact", "sensor", "axis"
 )
 FORCE_LIMIT = _gauge("force_limit_newtons", "N", "force at which the guard trips", "sensor")
-GUARD_TRIPPED = _gauge("guard_tripped", "", "1 while a trip is latched", "sensor")
+_TRIPPED = "1 while a trip is latched, other than the touch that a step waits for"
+GUARD_TRIPPED = _gauge("guard_tripped", "", _TRIPPED, "sensor")
 SAMPLE_AGE = _gauge("sample_age_seconds", "s", "age of the newest sample of a sensor", "device")
 GUARD_LATE = _counter(
     "guard_late_wakeups", "", "times that a guard woke more than a millisecond late", "sensor"

@@ -54,6 +54,7 @@ def snapshot(**changes: Any) -> dict[str, Any]:
                 "compensated": True,
                 "limit_n": 50.0,
                 "trip": "",
+                "touch": "",
                 "wrench": wrench,
                 "peaks": [None] * 6,
             }

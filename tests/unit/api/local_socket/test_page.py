@@ -27,6 +27,7 @@ from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.terminal import Terminal
 from cellctl.errors.link import LinkLost
 from cellctl.errors.local import NotThePage
+from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.runtime.cell_status import CellStatus
@@ -206,6 +207,17 @@ async def test_the_snapshot_says_what_is_permitted_and_what_is_wrong(
     assert aborted["faults"][0]["number"] == LinkLost.number
     assert aborted["alarms"][0]["remedy"] == LinkLost.remedy
     assert not aborted["permitted"]["clear"]["code"]
+
+
+async def test_the_touch_that_a_step_waits_for_is_no_trip(rig: DaemonRig, page: Page) -> None:
+    rig.bench.cell.guard.trip = GuardTrip(TripReason.TOUCH, 1.0, "touch after 12 ms")
+    (force,) = page.snapshot()["forces"]
+    assert "touch after 12 ms" in force["trip"]
+    assert force["touch"] == ""
+    rig.unit.board.update(contact=True)
+    (force,) = page.snapshot()["forces"]
+    assert force["trip"] == "", "the metrics read this"
+    assert "touch after 12 ms" in force["touch"]
 
 
 async def test_permitted_is_what_the_command_path_answers(rig: DaemonRig, page: Page) -> None:

@@ -221,6 +221,17 @@ async def test_what_is_broken_is_said_and_not_raised(
     assert [item.problem for item in report.calibrations[1:5]] == [""] * 4
 
 
+async def test_the_touch_that_a_step_waits_for_is_told_as_what_it_is(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    rig.bench.cell.guard.trip = GuardTrip(TripReason.TOUCH, 1.0, "touch after 12 ms")
+    report = await operator.status()
+    assert (report.guard_trip, report.guard_touch) == ("touch: touch after 12 ms", "")
+    rig.unit.board.update(contact=True)
+    report = await operator.status()
+    assert (report.guard_trip, report.guard_touch) == ("", "touch: touch after 12 ms")
+
+
 async def test_a_refusal_names_what_the_cell_has(rig: DaemonRig, operator: Operator) -> None:
     await rig.idle()
     answer = await operator.ask(StartCommand(serial="S", recipe="unknown"))

@@ -347,6 +347,16 @@ def test_the_screen_says_what_matters() -> None:
     assert len(text.splitlines()) <= 30
 
 
+def test_the_screen_calls_an_awaited_touch_no_stop_request() -> None:
+    now = utc_now()
+    console = Console(width=100, record=True, file=io.StringIO())
+    touched = AT_REST | {"guard_touch": "touch: after 12 ms"}
+    console.print(screen(StatusReport(**touched), now))
+    text = " ".join(console.export_text().split())
+    assert "guard good; stopped at the touch that the step looks for: touch: after 12 ms" in text
+    assert "stop requested" not in text
+
+
 @pytest.mark.parametrize(
     ("shows", "words"),
     [
