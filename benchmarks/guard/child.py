@@ -9,9 +9,8 @@ from cellctl.guard.watch.main import main
 class RestlessLoop(GuardLoop):
     """Stops as the real loop does, then releases the latch at once: one stop for each sample."""
 
-    def _stop(self) -> None:
-        super()._stop()
-        self._trip_handled = False
+    def _stop_at_new_trip(self) -> None:
+        super()._stop_at_new_trip()
         self._monitor.trip = None
         self._supervisor.release()
 

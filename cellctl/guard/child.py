@@ -39,6 +39,8 @@ class GuardChild:
         self._pending = PendingRequests(reply_timeout_s)
         self._loop = asyncio.get_running_loop()
         self._gone = asyncio.Event()
+        self._abandoned = False
+        """True once nobody waits for the end of the process any more."""
         # SEQPACKET keeps the messages apart: each is read whole or not at all, also one of a
         # process that is killed while it sends.
         self._link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -100,6 +102,12 @@ class GuardChild:
             except TimeoutError:
                 self._process.kill()
                 await self._gone.wait()
+            # A caller that gives up waiting must not leave a guard behind that hangs: nobody would
+            # know of it, and it would keep sensor and stop channel for itself.
+            except asyncio.CancelledError:
+                self._abandoned = True
+                self._process.kill()
+                raise
         self._close()
 
     def _read(self) -> None:
@@ -134,6 +142,8 @@ class GuardChild:
         self._gone.set()
         self._pending.fail(GuardDied(how))
         self._on_death(how)
+        if self._abandoned:
+            self._close()
 
     def _close(self) -> None:
         if self._pid_descriptor < 0:

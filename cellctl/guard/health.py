@@ -13,7 +13,8 @@ _HUNG_S = 1.0
 """A guard whose status is older than this hangs: it publishes one at every beat, fifty times a
 second. The robot's dead man has stopped the robot long before."""
 _SILENT_S = 1.0
-"""A sensor that is silent for this long is a fault even while the guard is not armed."""
+"""A sensor that is silent for this long is a fault even while the guard is not armed. An armed
+guard trips after milliseconds; this only reports, and leaves the driver time to reconnect."""
 
 
 @dataclass(frozen=True, slots=True)

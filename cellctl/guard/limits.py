@@ -63,7 +63,8 @@ class GuardLimits:
     """This many samples in a row with six equal values trip. At 1 kHz a sensor that has frozen is
     then noticed as soon as one that has fallen silent."""
     bad_frames: int = 3
-    """This many damaged or unusable frames within ``bad_frames_window_s`` trip."""
+    """This many damaged or unusable frames within ``bad_frames_window_s`` trip. A single one now
+    and then is normal on a serial line; three in the 100 frames of a window are not."""
     bad_frames_window_s: float = 0.1
     rate_hz: tuple[float, float] = (0.0, math.inf)
     """Allowed sample rate, averaged over ``rate_window_s``."""
@@ -108,7 +109,8 @@ class GuardSettings:
     ring_slots: int = 131_072
     """Samples kept for the daemon: two minutes at 1 kHz. A power of two."""
     start_timeout_s: float = 20.0
-    """Longest wait for sensor and stop channel; each driver has a connection time-out of its
-    own."""
+    """Longest wait for sensor and stop channel. It only ends a driver that hangs: each driver has a
+    shorter time-out of its own for its connection, and says then what it has waited for."""
     reply_timeout_s: float = 1.0
-    """A guard that does not answer a request within this time counts as dead."""
+    """A guard that does not answer a request within this time counts as dead. It answers within one
+    turn of its loop, which is a beat at most; the rest is for a PC that is busy."""

@@ -13,9 +13,11 @@ class Settling:
     timeout_s: float = 8.0
     """A load that is not still by then is a fault: a soft gripper, or a hose that swings."""
     poll_s: float = 0.05
-    """Pause between two looks at the newest window."""
+    """Pause between two looks at the newest window: an eighth of it, so that rest is noticed
+    soon."""
     reading_s: float = 0.5
-    """Once the load is still, a force is averaged over this time, against noise."""
+    """Once the load is still, a force is averaged over this time: the mean of 500 samples at 1 kHz
+    has a twentieth of the noise of one."""
 
 
 USUAL = Settling()

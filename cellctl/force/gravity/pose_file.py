@@ -44,11 +44,14 @@ def parse_pose_file(text: str) -> PoseRecord:
     """Read the text of a file; raises ``PayloadFileInvalid`` naming line and column."""
     # Spreadsheet programs write a byte order mark, which would become a part of the first column's
     # name.
-    lines = [line for line in text.lstrip("\ufeff").splitlines() if not line.startswith("#")]
-    reader = csv.DictReader(io.StringIO("\n".join(lines)), strict=True, skipinitialspace=True)
+    written = text.lstrip("\ufeff").splitlines()
+    # The reader counts only what it is given, so each line keeps its number in the file.
+    numbered = [(n, line) for n, line in enumerate(written, 1) if not line.startswith("#")]
+    content = "\n".join(line for _, line in numbered)
+    reader = csv.DictReader(io.StringIO(content), strict=True, skipinitialspace=True)
     try:
         _require_columns(reader.fieldnames)
-        rows = [(reader.line_num, row) for row in reader]
+        rows = [(numbered[reader.line_num - 1][0], row) for row in reader]
     except csv.Error as error:
         raise PayloadFileInvalid(f"not a CSV file: {error}") from error
     if not rows:

@@ -15,7 +15,7 @@ import socket
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.guard.messages import Message, encode, fault_to_json, receive, trip_to_json
-from cellctl.guard.report import TripReason
+from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.guard.ring import GuardStatus, RingWriter
 from cellctl.guard.watch.monitor import WrenchMonitor
 from cellctl.guard.watch.realtime import resident_peak_bytes
@@ -60,7 +60,8 @@ class GuardLoop:
         # What is true at the beginning is not told, so the first event is the end of the first
         # attempt to connect, for which ``GuardClient.start`` waits.
         self._reported_channel: tuple[bool, CellError | None] = (supervisor.up, None)
-        self._trip_handled = False
+        self._handled_trip: GuardTrip | None = None
+        """The trip for which a stop was requested last."""
         self._late_wakeups = 0
         self._next_beat_s = 0.0
 
@@ -129,8 +130,7 @@ class GuardLoop:
         for sample in samples:
             wrench = monitor.sample(sample)
             # The stop comes before the sample is published: publishing can wait, a stop cannot.
-            if monitor.trip is not None:
-                self._stop()
+            self._stop_at_new_trip()
             age_s = sample.receive_time_s - monitor.flange_time_s
             ring.publish(sample, wrench, age_s)
         # After the samples of the same read, so that a touch among them is reported as the touch
@@ -192,13 +192,8 @@ class GuardLoop:
     def _tick(self) -> None:
         """What depends on the time and not on input: silence, late answers, the beat."""
         time_s = now_s()
-        monitor = self._monitor
-        monitor.tick(time_s)
-        if monitor.trip is not None:
-            self._stop()
-        # The trip was acknowledged, so that the next one is new and must be sent again.
-        elif self._trip_handled:
-            self._trip_handled = False
+        self._monitor.tick(time_s)
+        self._stop_at_new_trip()
         answer = self._requests.late_answer(time_s)
         if answer is not None:
             self._send(answer)
@@ -209,18 +204,22 @@ class GuardLoop:
             self._supervisor.beat(time_s)
             self._publish_status(time_s)
 
-    def _stop(self) -> None:
+    def _stop_at_new_trip(self) -> None:
         """Handle a new trip, once: request the stop, then publish and tell.
 
         The order is what the guard is for: until the request is on the wire nothing else is done.
         Repeating a request that the robot has not confirmed is the supervisor's work.
         """
-        if self._trip_handled or self._monitor.trip is None:
+        trip = self._monitor.trip
+        # Told apart by identity and not by a flag that is cleared once no trip is latched: an
+        # acknowledgement and the next arming may both be read in one turn, and a trip of that
+        # arming would then be taken for the one before.
+        if trip is None or trip is self._handled_trip:
             return
         self._supervisor.stop(now_s())
-        self._trip_handled = True
+        self._handled_trip = trip
         self._publish_status(now_s())
-        self.event("trip", trip=trip_to_json(self._monitor.trip))
+        self.event("trip", trip=trip_to_json(trip))
 
     def _publish_status(self, time_s: float) -> None:
         monitor = self._monitor

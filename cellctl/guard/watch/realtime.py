@@ -11,6 +11,7 @@ import resource
 from collections.abc import Callable
 
 _MCL_CURRENT_AND_FUTURE = 3
+"""``MCL_CURRENT | MCL_FUTURE`` of ``sys/mman.h``; the standard library does not name them."""
 _FALLBACK_NICE = -15
 """Taken when SCHED_FIFO is refused. Under load the slowest answers then took two to three times as
 long, measured at the 99.9th percentile."""
@@ -70,10 +71,7 @@ def _nice() -> None:
 
 
 def _lock_memory() -> None:
-    if _libc().mlockall(_MCL_CURRENT_AND_FUTURE) != 0:
+    libc = ctypes.CDLL(None, use_errno=True)
+    if libc.mlockall(_MCL_CURRENT_AND_FUTURE) != 0:
         code = ctypes.get_errno()
         raise OSError(code, os.strerror(code))
-
-
-def _libc() -> ctypes.CDLL:
-    return ctypes.CDLL(None, use_errno=True)

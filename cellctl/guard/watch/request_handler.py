@@ -9,7 +9,11 @@ from cellctl.guard.watch.stop_supervisor import StopSupervisor
 from cellctl.interfaces.ft_sensor import FtHealth
 
 TARE_GRACE_S = 0.5
-"""A tare that has not ended this long after its duration gets no samples and is given up."""
+"""A tare that has not ended this long after its duration gets no samples and is given up.
+
+Samples are milliseconds late as a rule. It has to be shorter than the ``reply_timeout_s`` of
+``GuardSettings``, or the daemon would call the guard dead before it hears that the tare has failed.
+"""
 
 
 class RequestHandler:

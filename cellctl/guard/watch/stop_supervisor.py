@@ -5,10 +5,12 @@ import threading
 from collections.abc import Container
 
 from cellctl.errors.base import CellError
+from cellctl.errors.internal import Unexpected
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 
 _RETRY_S = 0.5
-"""Pause between attempts to connect."""
+"""Pause between attempts to connect: long enough not to flood a controller that is starting up. Its
+exact value does not matter, because a guard without its channel cannot be armed."""
 
 
 class StopSupervisor:
@@ -64,6 +66,10 @@ class StopSupervisor:
                 self.fault = None
             except CellError as error:
                 self.fault = error
+            # A defect of a driver must not end this thread in silence: nobody would ever try
+            # again, and the daemon could only say that the guard is not ready.
+            except Exception as error:  # noqa: BLE001
+                self.fault = Unexpected(f"in the stop channel: {error!r}")
             os.eventfd_write(self._bell, 1)
 
         self._opener = threading.Thread(target=run, name="stop-channel", daemon=True)

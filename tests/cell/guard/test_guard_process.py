@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -357,3 +358,14 @@ async def test_a_box_that_comes_back_with_another_set_up_is_named_until_it_is_pu
     await client.arm(PATIENT)
     await client.stop()
     await box.stop()
+
+
+async def test_a_hung_guard_is_killed_also_when_the_wait_for_its_end_is_given_up() -> None:
+    async with rig() as r:
+        pid = r.client.pid
+        os.kill(pid, signal.SIGSTOP)
+        ending = asyncio.create_task(r.client.stop())
+        await asyncio.sleep(0.05)
+        ending.cancel()
+        await asyncio.gather(ending, return_exceptions=True)
+        await until(lambda: not Path(f"/proc/{pid}").exists())

@@ -45,6 +45,7 @@ def test_roles_split_the_record() -> None:
         (HEADER + "\n0,0,0,1,1,2,3,4,5", "line 2, column mz_nm: .* nothing"),
         (HEADER + "\n" + GOOD + ",7", "line 2: more fields"),
         (HEADER + "\n" + GOOD + "\n0,0,0,1,one,2,3,4,5,6", "line 3, column fx_n: .*'one'"),
+        ("# one\n# two\n" + HEADER + "\n" + GOOD + ",7", "line 4: more fields"),
         (HEADER + "\n0,0,0,1,nan,2,3,4,5,6", "not finite"),
         (HEADER + "\n0,0,0,1,1,2,3,4,5,inf", "not finite"),
         (HEADER + "\n0,0,0,2,1,2,3,4,5,6", "length 2"),

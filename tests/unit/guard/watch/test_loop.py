@@ -20,6 +20,9 @@ from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
 from tests.unit.guard.watch.samples import ready_monitor, sample
 from tests.unit.guard.watch.test_stop_supervisor import Channel, opened
 
+OVERDUE = GuardLimits(stale_s=1e-9)
+"""A silence so short has always passed by the end of the turn in which it is armed."""
+
 
 class Sensor(FtSensor):
     """Gives a sample at each read, until it is told to fail."""
@@ -28,6 +31,8 @@ class Sensor(FtSensor):
         self.fault: Exception | None = None
         self.force = 0.0
         self.closed = False
+        self.held = threading.Lock()
+        """Taken by a test that lets the loop wait in its next read."""
 
     def open(self) -> None: ...
 
@@ -38,6 +43,8 @@ class Sensor(FtSensor):
         return -1
 
     def read(self, timeout_s: float) -> tuple[WrenchSample, ...]:
+        with self.held:
+            pass
         if self.fault is not None:
             raise self.fault
         return (sample(now_s(), self.force),)
@@ -176,5 +183,22 @@ def test_a_trip_sends_the_stop_before_it_is_told(bench: Bench) -> None:
     status = bench.reader.status()
     assert status is not None
     assert status.latched == 1
+    bench.daemon.close()
+    ended(bench, thread)
+
+
+def test_a_new_trip_right_after_an_acknowledge_is_stopped_as_well(bench: Bench) -> None:
+    """Acknowledge and arm may wait in the socket together, and the arming may trip at once."""
+    thread = run(bench)
+    limits = limits_to_json(GuardLimits(raw=(20.0,) * 6, stale_s=1.0))
+    assert "result" in ask(bench, do="arm", limits=limits)
+    bench.sensor.force = 30.0
+    first = event(bench, "trip")
+    # Both wait in the link when the loop takes its next turn: no turn lies between them.
+    with bench.sensor.held:
+        bench.daemon.send(encode({"id": 1, "do": "acknowledge"}))
+        bench.daemon.send(encode({"id": 2, "do": "arm", "limits": limits_to_json(OVERDUE)}))
+    second = event(bench, "trip")
+    assert (first["trip"]["reason"], second["trip"]["reason"]) == ("raw limit", "sensor silent")  # type: ignore[index]
     bench.daemon.close()
     ended(bench, thread)

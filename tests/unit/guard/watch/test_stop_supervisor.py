@@ -4,6 +4,7 @@ import threading
 
 import pytest
 
+from cellctl.errors.internal import Unexpected
 from cellctl.errors.link import ConnectTimeout, LinkLost
 from cellctl.guard.watch.stop_supervisor import StopSupervisor
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
@@ -18,12 +19,15 @@ class Channel(StopChannel):
         self.state: FlangeState | None = None
         self.broken = False
         self.absent = False
+        self.defect: Exception | None = None
         self.gate = threading.Event()
         self.gate.set()
 
     def open(self) -> None:
         assert self.gate.wait(5)
         self.opened += 1
+        if self.defect is not None:
+            raise self.defect
         if self.absent:
             raise ConnectTimeout("nobody came")
 
@@ -162,3 +166,15 @@ def test_a_robot_that_does_not_come_is_waited_for_with_pauses() -> None:
     supervisor.poll(1.0)
     assert supervisor._opener is not None
     settle(supervisor)
+
+
+def test_a_defect_of_the_driver_is_a_fault_of_the_channel_and_tried_again() -> None:
+    channel = Channel()
+    channel.defect = KeyError("defect")
+    supervisor = opened(channel)
+    assert not supervisor.up
+    assert isinstance(supervisor.fault, Unexpected)
+    channel.defect = None
+    supervisor.poll(1.0)
+    settle(supervisor)
+    assert supervisor.up
