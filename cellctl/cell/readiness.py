@@ -7,7 +7,7 @@ from cellctl.errors.robot import RobotNotReady, SpeedOverridden
 from cellctl.interfaces import Robot, RobotState
 
 OVERRIDE_BAND_PERCENT = 0.5
-"""Controllers report whole percents."""
+"""Controllers report whole percents, so half of one tells 100 from 99."""
 
 
 def require_ready(robots: Iterable[Robot]) -> None:

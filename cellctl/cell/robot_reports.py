@@ -1,4 +1,4 @@
-"""What one robot says of itself for a while, for people. Moves nothing."""
+"""Listens to the reports of one robot for a while and writes them for people. Moves nothing."""
 
 import asyncio
 from dataclasses import dataclass, field
@@ -11,18 +11,23 @@ from cellctl.geometry.pose import MM, Array, pose_to_xyzabc
 from cellctl.interfaces import PendantSelection, Robot, RobotState
 
 ANY_AGE_S = 1e9
+"""Greatest age for ``Robot.state`` where even an old report is wanted: some thirty years."""
 _LOOK_S = 0.005
+"""Pause between two looks at the newest report: a quarter of the 20 ms in which controllers report,
+so that none is missed and its age is known to 5 ms."""
 NOT_TOLD = "not told by this controller"
 
 
 @dataclass(slots=True)
 class RobotReports:
-    """What has been heard."""
+    """What one robot has reported."""
 
     facts: dict[str, str]
+    """Facts of its link, by name."""
     state: RobotState
+    """The newest report."""
     periods_s: list[float] = field(default_factory=list)
-    """From one report to the next."""
+    """Times from one report to the next."""
     oldest_s: float = 0.0
     """Greatest age that the newest report has had."""
     round_trips_s: tuple[float, ...] = ()
@@ -48,7 +53,7 @@ class RobotReports:
 
 
 async def listen(robot: Robot, seconds: float) -> RobotReports:
-    """Hear a connected robot for so long. Raises what its ``state`` raises."""
+    """Collect the reports of a connected robot for so long; raises what its ``state`` raises."""
     heard = RobotReports(robot.link_facts(), robot.state(ANY_AGE_S))
     end_s = now_s() + seconds
     while now_s() < end_s:
@@ -58,7 +63,7 @@ async def listen(robot: Robot, seconds: float) -> RobotReports:
             heard.state = state
         heard.oldest_s = max(heard.oldest_s, now_s() - state.time_s)
         await asyncio.sleep(_LOOK_S)
-    # Again, as a hello of a second channel may have come later.
+    # Asked again at the end: a second channel may have said hello only after the first question.
     heard.facts, heard.round_trips_s = robot.link_facts(), robot.round_trips_s()
     heard.selection = await robot.selection()
     return heard

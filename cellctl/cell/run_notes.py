@@ -19,7 +19,7 @@ class RunNote:
 
 
 class RunNotes:
-    """Who listens. Belongs to one event loop; whoever tells waits for nobody."""
+    """Passes each note on to all listeners. Belongs to one event loop; ``tell`` never waits."""
 
     def __init__(self) -> None:
         self.listeners: list[Callable[[RunNote], None]] = []
@@ -27,11 +27,11 @@ class RunNotes:
 
     @property
     def newest(self) -> tuple[RunNote, ...]:
-        """The last note of each topic: what held already when somebody begins to listen."""
+        """The last note of each topic. A recording begins with them: they hold already."""
         return tuple(self._newest.values())
 
     def tell(self, topic: str, values: Mapping[str, Any]) -> None:
-        """A topic has these values now; values that it had before are not told again."""
+        """Set the values of a topic; the listeners hear of it only when a value has changed."""
         before = self._newest.get(topic)
         if before is not None and before.values == values:
             return

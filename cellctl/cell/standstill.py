@@ -9,7 +9,11 @@ from cellctl.interfaces import Robot
 
 MOVED_M = 0.05 * MM
 MOVED_RAD = np.radians(0.005)
-"""A robot whose encoders changed by more has moved since the reference was taken."""
+"""A robot whose encoders changed by more has moved since the reference was taken.
+
+These are the thresholds within which a deck counts as corrected by default: an arm that has moved
+by less has not made a measurement wrong that would be accepted. The encoders of an arm that stands
+differ from report to report by a few micrometres, so rest is never taken for a move."""
 
 
 def require_unmoved(name: str, robot: Robot, base_T_flange: RigidTransform) -> None:

@@ -19,6 +19,7 @@ from cellctl.force.contact.streamed.admittance import (
 )
 from cellctl.force.contact.streamed.gains import LoopFigures, damping, levers, virtual_mass
 from cellctl.force.contact.streamed.identification import (
+    FASTEST_CHIRP_HZ,
     TICKS_OF_THE_LOOP,
     StiffnessFit,
     burst_dead_times,
@@ -33,14 +34,24 @@ from cellctl.geometry.pose import Array
 
 _DOWN = np.array([0.0, 0.0, 1.0])
 _FORCES_N = (5.0, 10.0, 15.0, 20.0)
+"""Forces at which the stiffness is read, upwards and then downwards (section 4.5, point 3)."""
 _READ_S = 0.4
+"""Length of a reading at standstill; its second half is averaged, 200 samples at 1 kHz."""
 _CHIRP_S = 4.0
+"""Length of a chirp. Without the ends over which it is faded, 3.2 s are left: six bursts of the
+length that a dead time is fitted to, at ticks of 2 ms."""
 _FREE_CHIRP_M = 1e-3
-_FASTEST_CHIRP_HZ = 8.0
+"""Amplitude in free air (section 4.5, point 1)."""
 _SHARE_OF_STEP = 0.8
+"""Share of the step that the controller accepts from tick to tick which a chirp may take. The rest
+is for the rounding of poses; its exact value only makes the chirp a little smaller."""
 _STEP_N = 5.0
+"""Force before a step of the loop, and height of the step where speeds allow it (5 to 10 N in
+section 4.5, point 4)."""
 _STEPS = 8
+"""Steps of which the mean is taken: it has about a third of the noise of one."""
 _STEP_DEAD_TIMES = 12
+"""Length of a step in dead times: twice the six after which it has to have settled."""
 _ACCELERATION_M_S2 = 1.0
 """Acceleration of the steps of the loop. They are so short that the bound of ordinary motions would
 hide how the loop behaves."""
@@ -130,7 +141,7 @@ class _Commissioning:
         self._loop = loop
         self.contact = StreamedContact(loop)
         fastest_m_s = _SHARE_OF_STEP * loop.stream.limits.step_m / loop.period_s
-        self.greatest_chirp_m = fastest_m_s / (2 * np.pi * _FASTEST_CHIRP_HZ)
+        self.greatest_chirp_m = fastest_m_s / (2 * np.pi * FASTEST_CHIRP_HZ)
 
     async def motion_dead_times(self, amplitude_m: float) -> Array:
         swing = await self._chirp(amplitude_m)

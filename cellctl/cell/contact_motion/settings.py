@@ -27,23 +27,33 @@ class ContactSettings:
     """A force that no motion may reach, and that the guard stops at."""
     limit_nm: float
     lateral_spring_n_m: float = 5e3
-    """K sideways while the peg is fed."""
+    """K sideways while the peg is fed, as simulated in section 4.3 of the study of insertion by
+    touch."""
     rim_spring_n_m: float = 5.6e5
-    """K of the attitude while the peg is fed, at the rim: 5 N·m/rad for a peg of 6 mm."""
+    """K of the attitude while the peg is fed, at the rim: 5 N·m/rad for a peg of 6 mm (section
+    4.3)."""
     filter_s: float = 2e-3
     """Time constant of the low-pass before the law; part of the dead time."""
     acceleration_m_s2: float = 0.1
+    """Greatest acceleration of the tip. The speeds are a few mm/s, which it reaches within tens of
+    milliseconds, so that it shortens no motion and spares the arm a jerk."""
     acceleration_rad_s2: float = 1.0
+    """The same for turns, at a lever of 0.1 m."""
     follow_m: float = 3e-3
-    """How far the tip may follow a press."""
+    """How far the tip may follow a press: vision knows the place of a face to 3 mm (section 1)."""
     give_way_m: float = 1.5e-3
-    """How far it may give way sideways."""
+    """How far it may give way sideways: what is expected, and 0.5 mm (section 4.2)."""
     give_way_rad: float = 0.052
+    """How far it may give way in attitude: 3°, more than the 2° that vision may leave."""
     fastest_retreat_m_s: float = 5e-3
+    """Greatest speed out of contact. Nothing grows there; a peg that is held after all is noticed
+    by its pull."""
     lost_tick_s: float | None = None
     """See ``TickRules``."""
     old_force_s: float = 5e-3
+    """See ``TickRules``."""
     lost_force_s: float = 20e-3
+    """See ``TickRules``."""
 
     @property
     def tilt_spring_nm_rad(self) -> float:

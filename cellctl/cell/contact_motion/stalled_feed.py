@@ -5,10 +5,15 @@ from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.force.contact.streamed.speeds import FEED_N, feed_override, touch_speed_m_s
 
 _STALLED_SHARE = 0.1
+"""A feed that the force has slowed to less than this share counts as standing."""
 _STALLED_S = 0.3
+"""For so long it has to stand, so that a chamfer to which the arm is just giving way is not taken
+for the end. The exact value only delays the end of a feed that is stuck."""
 _LAST_M = 0.5e-3
+"""Length of the last stretch before the seat, which is gone at the speed of a touch (section
+4.4)."""
 _TOUCH_SHARE = 0.8
-"""Speed over the last stretch, as a share of the feed."""
+"""Speed over that stretch, as a share of the feed: a touch may grow by 8 N, a feed by 10 N."""
 
 
 class StalledFeed:
@@ -24,7 +29,8 @@ class StalledFeed:
 
     @property
     def slowest_m_s(self) -> float:
-        """Speed that counts for the greatest time that the feed may take."""
+        """Speed that counts for the greatest time that the feed may take: a fifth of the full one,
+        as the force slows a feed most of the way where a part goes in hard."""
         return 0.2 * self._full_m_s
 
     def speed_m_s(self, sample: ContactSample) -> float:

@@ -37,17 +37,24 @@ from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
 from cellctl.geometry.pose import Array
 
 _TURN_LEVER_M = 0.1
-"""A turn on the way counts as the way of a point so far from the tip."""
+"""A turn on the way counts as the way of a point so far from the tip: about the length of a peg
+with its gripper. It only decides how a speed in m/s bounds a turn."""
 _SHORTEST_M = 1e-6
+"""A way shorter than this counts as this long, so that a speed along it can be stated at all."""
 _MET_RATIO = 0.8
-"""Share of the force limit that a contact which nobody expected may take."""
+"""Share of the force limit that a contact which nobody expected may take; the rest is for the error
+of the stiffness and the noise."""
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
-"""A motion may take so much longer than its way at full speed, before it is given up."""
+"""A motion is given up after three times the time of its way at full speed, and 10 s. It ends only
+what hangs: a late tick halves the speed, and a way of nothing still needs time to come to rest."""
 _HOLD_S = 30.0
-"""Longest work beside a standing stream, such as a record on the disk."""
+"""Longest work beside a standing stream, such as a record on the disk. It ends only what hangs."""
 _IN_CONTACT_N = 2.0
+"""A force below this, or below four times the noise, is none on the way out. It decides only
+between the slow and the fast speed."""
 _PULL_RATIO = 2.0
-"""Multiple of the press: a greater pull on the way out means that the peg is held."""
+"""Multiple of the press: a greater pull on the way out means that the peg is held. Friction alone
+pulls with less than what the peg was pressed in with."""
 
 
 class StreamedContact(ContactMotions):
@@ -213,8 +220,8 @@ class StreamedContact(ContactMotions):
         fast = min(settings.fastest_retreat_m_s, fastest_m_s(self._loop))
 
         def speed(sample: ContactSample) -> float:
-            touching = float(np.linalg.norm(sample.force_n)) > _in_contact_n(sample)
-            return slow if touching else fast
+            in_contact_n = max(_IN_CONTACT_N, 4.0 * sample.force_sigma_n)
+            return slow if float(np.linalg.norm(sample.force_n)) > in_contact_n else fast
 
         def held(sample: ContactSample) -> Ended | None:
             pulled = float(sample.force_n[2]) > _PULL_RATIO * settings.press_n
@@ -282,7 +289,3 @@ class StreamedContact(ContactMotions):
         self._loop.begin_motion(kind)
         limit_s = _LATEST_S + _LATEST_RATIO * path.remaining / slowest
         return await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
-
-
-def _in_contact_n(sample: ContactSample) -> float:
-    return max(_IN_CONTACT_N, 4.0 * sample.force_sigma_n)

@@ -16,8 +16,10 @@ from cellctl.force.contact.streamed.ticks import Pace
 from cellctl.geometry.pose import Array
 
 _FREE_M = 0.5e-3
-"""A press that moves so far without contact has lost it."""
+"""A press that moves so far without contact has lost it (d_free in section 4.2 of the study of
+insertion by touch)."""
 _SATURATED_S = 0.2
+"""Two axes or more that stand at their bounds for so long are a fault (section 4.2)."""
 
 End = Callable[[ContactSample], Ended | None]
 
@@ -47,6 +49,7 @@ class StreamedMotion:
     _kept_m: float = field(default=0.0, init=False)
     """Displacement along z at the last tick with contact."""
     _saturated: int = field(default=0, init=False)
+    """Ticks in a row with two axes or more at their bounds."""
     _braking: bool = field(default=False, init=False)
 
     async def run(self) -> ContactMotion:
@@ -68,7 +71,8 @@ class StreamedMotion:
         return ContactMotion(ended, tuple(samples))
 
     def _next(self) -> Array:
-        # What has begun to brake comes to a standstill before it goes on.
+        # A motion that has begun to brake comes to a standstill before it goes on. Otherwise a
+        # stream that is late again and again would make the arm jerk.
         self._braking = self.loop.pace is Pace.BRAKE or (self._braking and not self._stands())
         return self._pose(Pace.BRAKE if self._braking else self.loop.pace)
 
@@ -105,8 +109,8 @@ class StreamedMotion:
         if self.press is None:
             return
         admittance = self.press.admittance
-        held = self._at_bound() >= 2
-        self._saturated = self._saturated + 1 if held else 0
+        # One axis at its bound is an ordinary thing: it follows a face that ends nearby.
+        self._saturated = self._saturated + 1 if self._at_bound() >= 2 else 0
         if self._saturated * self.loop.period_s > _SATURATED_S:
             given = ", ".join(f"{value:.4f}" for value in admittance.displacement)
             raise AdmittanceSaturated(f"displaced by ({given}) m, rad")

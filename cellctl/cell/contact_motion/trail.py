@@ -5,6 +5,8 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 _STEP_M = 20e-6
+"""A pose is kept when it is deeper than the last by this: less is the noise of the reports, and a
+trail needs no finer points, since the way between them is straight."""
 
 
 class Trail:

@@ -14,10 +14,15 @@ from cellctl.guard.limits import (
 )
 
 RAW_MARGIN_N = 12.0
-"""A single sample may exceed a filtered limit by its noise."""
 RAW_MARGIN_N_M = 6.0
+"""By so much a single sample may exceed a filtered limit, for its noise.
+
+No data sheet states that noise. Assumed is 0.05 % of a full scale of 5 kN and 1 kN·m, that is
+2.5 N and 0.5 N·m: 12 N are nearly five standard deviations, so that even of a force at its filtered
+limit only one sample in a million passes them by chance."""
 RATE_RATIO = 0.1
-"""What the pace of the sensor may be off, either way."""
+"""What the rate of the sensor may be off, either way: far more than any clock is off, and far less
+than what a wrong set-up (half or twice the rate) makes."""
 
 
 @dataclass(frozen=True, slots=True)

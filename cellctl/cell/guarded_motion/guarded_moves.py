@@ -20,9 +20,13 @@ from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot, RobotMode, RobotState
 
 POLL_S = 0.01
+"""Pause between two looks for a trip. It delays only the daemon's second stop: the guard's own has
+left by then."""
 REPORT_WAIT_S = 0.5
-"""How long the guard's report of a trip may lag behind the robot's stop."""
+"""How long the guard's report of a trip may lag behind the robot's stop. It takes milliseconds; the
+rest is for a daemon that is busy."""
 TARE_S = 0.5
+"""Length of a tare: the mean of 500 samples at 1 kHz has a twentieth of the noise of one."""
 
 Motion = Coroutine[Any, Any, RobotState]
 GuardedMove = Callable[[Motion], Awaitable[None]]

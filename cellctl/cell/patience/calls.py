@@ -10,7 +10,8 @@ from cellctl.errors.link import ReplyTimeout
 _log = log.get(__name__)
 
 PATIENCE_S = 180.0
-"""Drivers have time-outs of their own, some of a minute; this is for a driver that hangs."""
+"""Longest call of a driver. Drivers have time-outs of their own, some of a minute; this one is for
+a driver that hangs, so it only has to be longer than all of those."""
 END_S = 6.0
 """A driver that is cancelled may stop its arm first, which takes it a few seconds. Less than what a
 cancelled job is given as a whole."""

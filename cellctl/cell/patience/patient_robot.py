@@ -16,8 +16,9 @@ from cellctl.geometry.pose import Array
 from cellctl.interfaces import PendantSelection, Robot, RobotState, StreamingRobot
 
 _STANDS_M, _STANDS_RAD = 20e-6, 1e-4
-"""Reports of an arm that stands differ by a few micrometres; the slowest move that any process asks
-for is 20 um/s."""
+"""An arm stands as long as it is no farther than this from where it was first seen. Reports of an
+arm that stands differ by a few micrometres. The slowest move that any process asks for, 20 µm/s,
+leaves these bounds after a second, and so long before ``StandingTime.most_s``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,7 +26,9 @@ class StandingTime:
     """How long an arm may stand within a move, as at a speed override of zero."""
 
     most_s: float = 30.0
+    """Long enough for a person to turn an override of zero up again."""
     look_s: float = 0.5
+    """Pause between two looks: short beside ``most_s``, and it costs nothing."""
 
 
 class PatientRobot(RobotLayer):
@@ -45,15 +48,15 @@ class PatientRobot(RobotLayer):
         await answer_within(super().connect(), self.name)
 
     async def disconnect(self) -> None:
-        """The same."""
+        """As the robot behind it, within a time."""
         await answer_within(super().disconnect(), self.name)
 
     async def selection(self) -> PendantSelection:
-        """The same."""
+        """As the robot behind it, within a time."""
         return await answer_within(super().selection(), self.name)
 
     async def rearm(self) -> None:
-        """The same."""
+        """As the robot behind it, within a time."""
         await answer_within(super().rearm(), self.name)
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
@@ -63,7 +66,7 @@ class PatientRobot(RobotLayer):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """The same."""
+        """As the robot behind it, unless the arm gets nowhere."""
         return await self._moved(
             super().move_linear(
                 base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
@@ -71,7 +74,7 @@ class PatientRobot(RobotLayer):
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        """The same."""
+        """As the robot behind it, unless the arm gets nowhere."""
         return await self._moved(super().step(base_T_flange, speed_m_s=speed_m_s))
 
     async def _moved(self, move: Coroutine[Any, Any, RobotState]) -> RobotState:

@@ -29,7 +29,7 @@ Listener = Callable[[RobotNote], None]
 
 
 class RobotNotes:
-    """Who listens to the robots of a cell."""
+    """Puts a layer before each robot of a cell that tells all listeners what it is told to do."""
 
     def __init__(self) -> None:
         self.listeners: list[Listener] = []
@@ -46,21 +46,21 @@ class RobotNotes:
 
 
 class NotedRobot(RobotLayer):
-    """Notes first and passes on then: what fails was asked for all the same."""
+    """Notes each command before it passes it on, so that a command that fails is on record too."""
 
     def __init__(self, robot: Robot, tell: Listener) -> None:
         super().__init__(robot)
         self._tell = tell
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
-        """Noted with its target."""
+        """Note the target and speed, then move."""
         self._note("move_joint", joints_rad=joints_rad.tolist(), speed_ratio=speed_ratio)
         return await super().move_joint(joints_rad, speed_ratio=speed_ratio)
 
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """Noted with its target."""
+        """Note the target, speed and acceleration, then move."""
         self._note(
             "move_linear",
             base_T_flange_mm_deg=pose_to_xyzabc(base_T_flange).tolist(),
@@ -72,7 +72,7 @@ class NotedRobot(RobotLayer):
         )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        """Noted with its target."""
+        """Note the target and speed, then move."""
         self._note(
             "step",
             base_T_flange_mm_deg=pose_to_xyzabc(base_T_flange).tolist(),
@@ -81,14 +81,14 @@ class NotedRobot(RobotLayer):
         return await super().step(base_T_flange, speed_m_s=speed_m_s)
 
     async def stop(self) -> None:
-        """Passed on first: nothing may come between a stop and the robot."""
+        """Stop, and note it only then: nothing may come between a stop and the robot."""
         try:
             await super().stop()
         finally:
             self._note("stop")
 
     async def rearm(self) -> None:
-        """Noted."""
+        """Note it, then re-arm."""
         self._note("rearm")
         await super().rearm()
 
@@ -103,6 +103,6 @@ class NotedStreamingRobot(NotedRobot, StreamingRobotLayer):
         super().__init__(robot, tell)
 
     def stream(self, limits: StreamLimits) -> AbstractAsyncContextManager[PoseStream]:
-        """Noted with its limits."""
+        """Note the limits, then open the stream."""
         self._note("stream", **asdict(limits))
         return super().stream(limits)

@@ -1,10 +1,10 @@
 """A digital output of this PC in the permit loop of a robot: a stop that no program has to read.
 
 The contact is closed when the robot is re-armed. It is opened with every stop of the daemon, and
-when a motion ends with a fault of its link or an error of the controller: a program that would have
-stopped the arm may be what has ended. Its
-coupler opens it by its own watchdog when it no longer hears this PC, and any stop of the guard goes
-its own way beside it. It protects the process; it is no safety function.
+when a motion ends with a fault of its link or an error of the controller: the robot program that
+would have obeyed a stop may be the very thing that has ended. The coupler of the output opens the
+contact by its own watchdog when it no longer hears this PC. A stop of the guard takes a way of its
+own beside the contact. The contact protects the process; it is no safety function.
 """
 
 import asyncio
@@ -47,20 +47,22 @@ class PermittedRobot(RobotLayer):
     async def move_linear(
         self, base_T_flange: RigidTransform, *, speed_m_s: float, acceleration_m_s2: float
     ) -> RobotState:
-        """The same."""
+        """As ``move_joint``."""
         async with self._opened_on_doubt():
             return await super().move_linear(
                 base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
             )
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        """The same."""
+        """As ``move_joint``."""
         async with self._opened_on_doubt():
             return await super().step(base_T_flange, speed_m_s=speed_m_s)
 
     async def stop(self) -> None:
-        """The robot confirms the stop; a contact that cannot be opened is only logged, as its
-        watchdog opens it then."""
+        """Stop by both ways at once; returns when the robot has confirmed it.
+
+        A contact that cannot be opened is only logged: the coupler's watchdog opens it then.
+        """
         opening = asyncio.create_task(self._open())
         try:
             await super().stop()
@@ -78,9 +80,10 @@ class PermittedRobot(RobotLayer):
         try:
             yield
         except (LinkError, ControllerFault):
-            # Before whoever commands the cell hears of it and stops everything: over the link a
-            # stop may reach nobody. No such fault is passed over, so the robot is re-armed before
-            # it moves again.
+            # The contact is opened before the fault is raised and its handler stops everything:
+            # over the link that has failed, that stop may reach nobody. Every such fault ends the
+            # run, so the robot is re-armed, and the contact closed, before anything moves again.
+            # Shielded, because a write that is cancelled would leave the contact closed.
             await asyncio.shield(asyncio.create_task(self._open()))
             raise
 

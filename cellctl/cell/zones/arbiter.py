@@ -16,10 +16,12 @@ from cellctl.interfaces import RobotState
 _log = log.get(__name__)
 
 REPORT_AGE_S = 0.5
-"""A position older than this is not known."""
+"""A position older than this is not known. Controllers report every 20 ms, so that 25 reports in a
+row are missing by then."""
 REPORT_WAIT_S = 1.0
 """How long a report may stay away, or an arm take to come to rest, before a zone is refused."""
 POLL_S = 0.05
+"""Pause between two looks at a zone that is taken: what it adds to a wait is not noticed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

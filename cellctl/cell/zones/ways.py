@@ -13,7 +13,7 @@ from cellctl.interfaces import RobotState
 from cellctl.interfaces.robot import ForwardKinematics
 
 GREATEST_RAD = 4.0 * np.pi
-"""No joint of an arm turns further from its zero."""
+"""No joint of an arm turns further from its zero: twice the ±360° of data sheets."""
 WAVER_M = 0.001
 """From point to point of its way out an arm may come back by so much, as by its rounded joints."""
 
@@ -82,7 +82,7 @@ class UnknownWay:
         return not share.is_clear(self.target_rad)
 
     def leads_out(self, share: Share) -> bool:  # noqa: ARG002
-        """Nobody knows."""
+        """Never: between its taught poses the way is not known."""
         return False
 
 

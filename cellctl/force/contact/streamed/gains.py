@@ -22,11 +22,12 @@ all."""
 _GREATEST_LOAD = 0.70
 """The gains below make a load of 2/3; above 0.70 the study refuses to engage."""
 _SLOWEST_M_S = 0.05e-3
-"""A press that moves the arm more slowly than this is refused: 1 mm would take 20 s."""
+"""A press that moves the arm more slowly than this is refused (section 4.1): 1 mm would take
+20 s."""
 _MASS_KG = 10.0
 """Greatest virtual mass. By the study it hardly matters between 5 and 50 kg."""
 _MASS_SHARE = 0.1
-"""Share of the dead time that M/S may have."""
+"""Share of the dead time that M/S may have. The study asks for M/S ≪ θ."""
 
 
 @dataclass(frozen=True, slots=True)

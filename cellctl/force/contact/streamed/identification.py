@@ -20,15 +20,17 @@ BURST_TICKS = 200
 """Least ticks of a burst. A dead time that holds for some bursts of a chirp only would be lost in a
 fit over the whole; the loop is planned with the greatest."""
 BURST_S = 0.5
-"""Least length of a burst where ticks are short."""
+"""Least length of a burst where ticks are short: a fit needs some swing of the chirp, however many
+ticks."""
 _FADED_SHARE = 0.1
 """Share of a chirp at either end over which it is faded in and out."""
 TICKS_OF_THE_LOOP = 1.5
 """Ticks that a sampled loop adds to the delay from command to force: one for reading and computing,
 and half of one because a setpoint is held until the next."""
-_SLOWEST_HZ, _FASTEST_HZ = 0.5, 8.0
+_SLOWEST_CHIRP_HZ, FASTEST_CHIRP_HZ = 0.5, 8.0
+"""Frequencies between which a chirp rises."""
 _STEPS_IN_A_TICK = 4
-"""Grid of the model: a delay is a fraction of a tick as a rule."""
+"""Points of the model's grid in a tick: a delay is rarely a whole number of ticks."""
 _GREATEST_RESIDUAL = 0.25
 """Greatest residual of a fit over the standard deviation of the response. Beyond that the response
 is not mainly a delayed command, and a delay that was fitted to it means nothing."""
@@ -74,8 +76,8 @@ def chirp(amplitude_m: float, duration_s: float, period_s: float) -> Array:
     It begins and ends at rest at nought.
     """
     time_s = np.arange(round(duration_s / period_s) + 1) * period_s
-    rate = (_FASTEST_HZ - _SLOWEST_HZ) / duration_s
-    phase = 2 * np.pi * (_SLOWEST_HZ * time_s + rate * time_s**2 / 2)
+    rate = (FASTEST_CHIRP_HZ - _SLOWEST_CHIRP_HZ) / duration_s
+    phase = 2 * np.pi * (_SLOWEST_CHIRP_HZ * time_s + rate * time_s**2 / 2)
     # A chirp that began or ended with a jump would make the arm swing at its own frequency, which
     # says nothing about its delay.
     from_the_ends_s = np.minimum(time_s, time_s[-1] - time_s)
@@ -202,7 +204,7 @@ def fit_loop(time_s: Array, push_n: Array, press_n: Array, damping_n_s_m: float)
     done = np.cumsum(period_s * (push_n - press_n))
 
     def solved(dead_s: float) -> tuple[float, float]:
-        # Half a tick later, because a setpoint is held for a tick.
+        # Half a tick later, because a setpoint is held for a whole tick.
         late = np.interp(time_s - dead_s - period_s / 2, time_s, done, left=0.0)
         design = np.stack([late, np.ones_like(late)], axis=1)
         slope, offset = np.linalg.lstsq(design, press_n, rcond=None)[0]

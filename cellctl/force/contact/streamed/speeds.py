@@ -11,7 +11,7 @@ DETECTION_S = 0.03
 """A contact that is new, or that is lost, is believed when it has lasted for this time (t_det of
 section 3.2)."""
 FASTEST_TOUCH_M_S = 3e-3
-"""No touch is faster than this, however soft the contact."""
+"""No touch is faster than this, however soft the contact (section 1)."""
 FEED_N = 10.0
 """Force by which a feed may grow before the arm has answered (ΔF of section 4.4)."""
 LOST_SHARE = 0.3

@@ -34,7 +34,7 @@ class TickRules:
     old_force_s: float = 5e-3
     """Age of the newest force at which the motion slows down: five samples at 1 kHz are missing."""
     lost_force_s: float = 20e-3
-    """Age of the newest force at which the motion is given up."""
+    """Age of the newest force at which the motion is given up (section 4.2)."""
 
     def pace(self, tick_age_s: float, force_age_s: float) -> Pace:
         """How to go on after a tick; raises ``StreamLate``."""
