@@ -32,6 +32,8 @@ class Alarms:
         self._store = store
         self._background = background
         self._active: dict[int, ActiveAlarm] = {}
+        self._came_meanwhile: dict[int, ActiveAlarm] = {}
+        """The first of each number that came while an earlier one was being acknowledged."""
 
     @property
     def numbers(self) -> tuple[int, ...]:
@@ -57,14 +59,20 @@ class Alarms:
         # The list changes at once and the store later: the line must see the alarm also when the
         # disk is what has failed.
         text = "; ".join([str(error), *getattr(error, "__notes__", ())])
-        self._active.setdefault(error.number, ActiveAlarm(error.number, text, utc_now(), run))
+        alarm = ActiveAlarm(error.number, text, utc_now(), run)
+        self._active.setdefault(error.number, alarm)
+        self._came_meanwhile.setdefault(error.number, alarm)
         self._background.start(self._store.do(RunStore.add_alarm, run, error.number, text))
 
     async def acknowledge(self, number: int, who: str) -> bool:
         """Acknowledge every alarm with this number; False when none is active."""
         if number not in self._active:
             return False
+        self._came_meanwhile.pop(number, None)
         # The disk first, so that an acknowledged alarm does not come back with the next start.
         await self._store.do(RunStore.acknowledge_alarms, number, who)
         self._active.pop(number, None)
+        # Nobody has acknowledged what came after the store was told: in the store it is active too.
+        if number in self._came_meanwhile:
+            self._active[number] = self._came_meanwhile.pop(number)
         return True

@@ -9,9 +9,11 @@ from cellctl.api.local_socket.live_view import LiveView
 from cellctl.runtime.cell_status import CellStatus
 
 FOLLOWERS = 2
+"""The page, and the page that takes its place while it is being restarted."""
 UNREAD_S = 5.0
 """A browser that takes nothing for so long has gone, or stands still behind a full network."""
 DESCRIBE_PERIOD_S = 3.0
+"""How often files and store are asked. They change by procedures and runs, which take longer."""
 
 Describe = Callable[[], Awaitable[dict[str, Any]]]
 
@@ -63,7 +65,11 @@ class LiveFeed:
         task = asyncio.current_task()
         assert task is not None
         if len(self._mailboxes) >= FOLLOWERS:
-            next(iter(self._mailboxes)).cancel()
+            # Taken out at once: its own clean-up runs later, and the next follower that comes must
+            # not choose it again.
+            oldest = next(iter(self._mailboxes))
+            del self._mailboxes[oldest]
+            oldest.cancel()
         mailbox = self._mailboxes[task] = _Mailbox()
         if self._described:
             mailbox.put("description", self._described)

@@ -10,6 +10,8 @@ from cellctl.errors.local import MessageMalformed
 REQUEST_LIMIT = 4096
 """Bytes of a request with its line end."""
 ANSWER_LIMIT = 1 << 20
+"""Bytes of an answer. A status with all its texts has some kilobytes; this keeps a program that is
+no daemon from filling the memory of its client."""
 M = TypeVar("M")
 C = TypeVar("C", bound=BaseModel)
 FaultNumber = Annotated[int, Field(ge=1, le=9999)]

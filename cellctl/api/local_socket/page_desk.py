@@ -26,6 +26,8 @@ Obey = Callable[[CommandRequest, str, Mapping[str, str]], Awaitable[Taken | Refu
 """Submits a command of a person, with what the audit log is told besides."""
 
 KEYS_KEPT = 1000
+"""Answers that are remembered, for commands that come again. A browser repeats one within seconds,
+so that hours of commands are more than enough."""
 NOTED_A_MINUTE = 60
 """Refusals that are noted. Whoever may not even stop the cell could else fill the disk."""
 ROLES: tuple[Role, ...] = ("view", "operate", "maintain")

@@ -1,8 +1,9 @@
 """The connections of the local API, their lines and limits; knows nothing of the cell."""
 
 import asyncio
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Coroutine
 from dataclasses import dataclass
+from typing import Any
 
 from cellctl import log
 from cellctl.api.local_socket.messages import (
@@ -20,7 +21,7 @@ from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.local import MessageMalformed
 
-Handle = Callable[[Request, int], Awaitable[Answer]]
+Handle = Callable[[Request, int], Coroutine[Any, Any, Answer]]
 """Answers a request; the second argument is the number of the user who asks."""
 
 Follow = Callable[[asyncio.StreamWriter], Awaitable[None]]
@@ -34,7 +35,9 @@ class LocalLimits:
     """How many connections are served, and how long each may take."""
 
     clients: int = 16
+    """Connections at a time: the page has a few, each terminal one."""
     idle_s: float = 30.0
+    """A terminal asks and hangs up; one that says nothing for so long was forgotten."""
     request_s: float = 3.0
     """Time from the first byte of a request to its last, and for an answer to be taken."""
 
@@ -84,7 +87,11 @@ class LocalServer:
         task = asyncio.current_task()
         assert task is not None
         if len(self._clients) >= self._limits.clients:
-            next(iter(self._clients)).cancel()  # the oldest: an Abort must always get in
+            # The oldest has to go: an Abort must always get in. It is taken out at once, because
+            # its own clean-up runs later and the next newcomer must not choose it again.
+            oldest = next(iter(self._clients))
+            del self._clients[oldest]
+            oldest.cancel()
         self._clients[task] = None
         writer.transport.set_write_buffer_limits(0)  # drain waits until everything is handed over
         try:
@@ -143,7 +150,7 @@ class LocalServer:
         """The answer to a request. A command that was begun ends even when its client is gone."""
         if isinstance(request, Failed):
             return request
-        task = asyncio.create_task(_run(self._handle, request, uid))
+        task = asyncio.create_task(self._handle(request, uid))
         self._handling.add(task)
         task.add_done_callback(self._handling.discard)
         # ``wait`` leaves the task alone when this connection is cancelled: whoever gives a command
@@ -153,7 +160,8 @@ class LocalServer:
         if error is None:
             return task.result()
         _log.error("local request failed", uid=uid, fault=str(error), exc_info=error)
-        known = error if isinstance(error, CellError) else _unexpected(error)
+        unknown = f"{type(error).__name__} in the local API: {error}"
+        known = error if isinstance(error, CellError) else Unexpected(unknown)
         return Failed(number=known.number, text=str(known))
 
 
@@ -163,11 +171,3 @@ def _parsed(line: bytes, uid: int) -> Request | Failed:
     except MessageMalformed as fault:
         _log.warning("local request malformed", uid=uid, fault=str(fault))
         return Failed(number=fault.number, text=str(fault))
-
-
-def _unexpected(error: BaseException) -> CellError:
-    return Unexpected(f"{type(error).__name__} in the local API: {error}")
-
-
-async def _run(handle: Handle, request: Request, uid: int) -> Answer:
-    return await handle(request, uid)

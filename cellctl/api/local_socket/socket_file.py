@@ -9,6 +9,7 @@ from pathlib import Path
 from cellctl.errors.local import CannotServeLocally, LocalApiInUse
 
 MODE = 0o660
+"""Reading and writing for the daemon's user and the group; nobody else may connect."""
 _NAME = "cellctl.sock"
 
 

@@ -7,7 +7,10 @@ import struct
 from pathlib import Path
 
 _CREDENTIALS = struct.Struct("3i")
+"""``struct ucred`` of ``unix(7)``: process, user and group."""
 _LOOKUP_S = 1.0
+"""Longest wait for a directory service. Its answer is only a name for the records, and a command
+must not wait longer for it."""
 _LOCAL_USERS = Path("/etc/passwd")
 
 

@@ -9,9 +9,11 @@ from collections.abc import Callable
 from functools import partial
 
 _LATE_S = 0.1
-"""A timer that fires later than this shows that the event loop itself was held up."""
+"""A timer that fires later than this shows that the event loop itself was held up: a loop that is
+not busy is late by a millisecond."""
 _GRACE_S = 0.25
-"""After such a delay, beats that already wait in the socket get this long to be read, once."""
+"""After such a delay, beats that already wait in the socket get this long to be read, once. Reading
+them takes a few turns of the loop; by so much a line that is really dead is noticed later."""
 
 
 class HeartbeatWatch:

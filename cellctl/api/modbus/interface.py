@@ -31,6 +31,8 @@ from cellctl.runtime.cell_status import CellStatus
 _log = log.get(__name__)
 _IDENTITY = ("cellctl", "cell controller", version("cellctl"))
 _QUEUE_LIMIT = 16
+"""Commands that wait. A PLC gives one and waits for its answer; this only bounds one that does
+not."""
 INPUT_TOPIC, HOLDING_TOPIC = "/registers/input", "/registers/holding"
 _BEAT = "plc_heartbeat"
 _RESTLESS = re.compile(r"seq_(head|tail)|cell_heartbeat|(mode|state)_time|refusal_\d+_age|test_.*")

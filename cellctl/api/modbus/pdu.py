@@ -13,7 +13,10 @@ READ_HOLDING, READ_INPUT, WRITE_ONE, WRITE_MANY, MASK_WRITE, READ_WRITE, DEVICE_
     3, 4, 6, 16, 22, 23, 43,
 )  # fmt: skip
 MAX_READ, MAX_WRITE, MAX_READ_WRITE = 125, 123, 121
+"""Registers of one request that are read, written, and written beside a read (sections 6.3, 6.12
+and 6.17)."""
 _MEI_READ_ID = 0x0E
+"""The only MEI type that is served: Read Device Identification (section 6.21)."""
 _STREAM_LIMITS = {1: 2, 2: 6, 3: 6}
 """Read-device-id code to its last object: basic, regular, extended (there are none)."""
 

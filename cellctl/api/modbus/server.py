@@ -33,12 +33,14 @@ class ServerLimits:
     """What a connection may cost."""
 
     clients: int = 8
+    """Connections at a time: a PLC has one or two, and an engineer's tools some more."""
     idle_s: float = 60.0
     """A PLC writes its heartbeat at least twice a second; one that is silent so long is gone."""
     quiet_s: float = 3.0
     """On a full server, one that has been silent so long makes room for a new one."""
     frame_s: float = 3.0
-    """From the first byte of a request to its last, and for an answer to be taken."""
+    """From the first byte of a request to its last, and for an answer to be taken. Both take
+    milliseconds; the rest is for a network that loses packets."""
 
 
 class ModbusServer:
@@ -181,7 +183,10 @@ def _address(writer: asyncio.StreamWriter) -> _Address:
 
 
 def tune(connection: socket.socket) -> None:
-    """Answers leave at once, and a peer that is gone without a word is found within 15 s."""
+    """Answers leave at once, and a peer that is gone without a word is found within 15 s.
+
+    So long takes the first question after 5 s of silence with three more, 3 s apart, and so long
+    may an answer stay without its receipt."""
     tcp = socket.IPPROTO_TCP
     connection.setsockopt(tcp, socket.TCP_NODELAY, 1)
     connection.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)

@@ -12,7 +12,8 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 EDGE_MARGIN_N_M = 2.75, 1.5
-"""Allowance for tare, friction and the lever of the side force in the moments about x and y."""
+"""Allowance for tare, friction and the lever of the side force in the moments about x and y. With
+the paper's deck they make the bounds of docs/mating.md, 14 and 24 N·m."""
 SEAT_DEPTH_M = 1e-4
 """A part that stands higher than this above its seat, or lies deeper, is not seated. A pin that is
 caught on its chamfer holds a part millimetres too high, so the bound need not be sharp; it is what
@@ -114,13 +115,14 @@ def judge_seat(
     gap_m = expected_m - (travel_m - force_n / stiffness_n_m)
     lateral_n = float(np.hypot(wrench[0], wrench[1]))
     moments = np.abs(wrench[3:])
-    tests = (
-        (SeatFinding.FORCE_LOW, force_n < limits.force_low_n),
-        (SeatFinding.FORCE_HIGH, force_n > limits.force_high_n),
-        (SeatFinding.HIGH, gap_m > limits.depth_m),
-        (SeatFinding.DEEP, gap_m < -limits.depth_m),
-        (SeatFinding.LATERAL, lateral_n > limits.lateral_n),
-        (SeatFinding.MOMENT, bool((moments > limits.moment_n_m).any())),
-    )
-    findings = tuple(finding for finding, found in tests if found)
+    # Each says what a good seat is, so that what is not a number is never seated.
+    good = {
+        SeatFinding.FORCE_LOW: force_n >= limits.force_low_n,
+        SeatFinding.FORCE_HIGH: force_n <= limits.force_high_n,
+        SeatFinding.HIGH: gap_m <= limits.depth_m,
+        SeatFinding.DEEP: gap_m >= -limits.depth_m,
+        SeatFinding.LATERAL: lateral_n <= limits.lateral_n,
+        SeatFinding.MOMENT: bool((moments <= limits.moment_n_m).all()),
+    }
+    findings = tuple(finding for finding, holds in good.items() if not holds)
     return SeatVerdict(force_n, gap_m, lateral_n, float(moments.max()), findings)

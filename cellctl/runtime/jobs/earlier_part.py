@@ -15,7 +15,8 @@ Warn = Callable[[CellError], Awaitable[None]]
 _FINISHED = frozenset({RunResult.GOOD, RunResult.BAD})
 """A part whose run was stopped or aborted is begun anew with the same number, rightly."""
 _LOOKED_AT = 100
-"""Newest runs of the number: enough to find one among runs that were stopped."""
+"""Newest runs with the serial number that are looked at. A part is not begun a hundred times: the
+bound only keeps a number that stands for "unknown" from having all its runs read."""
 
 
 async def warn_of_earlier_part(

@@ -26,7 +26,9 @@ def require_stand_off(robot: Robot, plan: MatingPlan) -> None:
     state = robot.state()
     distance_m, angle_rad = state.distance_to(plan.base_T_flange)
     allowed_m, allowed_rad = plan.settings.stand_off_tolerance
-    if distance_m > allowed_m or angle_rad > allowed_rad or state.moving:
+    # Written so that a pose that is not a number counts as elsewhere.
+    there = distance_m <= allowed_m and angle_rad <= allowed_rad
+    if not there or state.moving:
         raise ContactPlanInvalid(
             f"robot is {distance_m / MM:.3f} mm and {np.rad2deg(angle_rad):.4f}° away from the "
             f"planned stand-off{' and moving' if state.moving else ''}"
@@ -196,7 +198,8 @@ async def _steady(attempt: Attempt) -> None:
 
 def _require_plausible(mean: Array, plausible: tuple[float, float]) -> None:
     force_n, moment_n_m = float(np.linalg.norm(mean[:3])), float(np.linalg.norm(mean[3:]))
-    if force_n > plausible[0] or moment_n_m > plausible[1]:
+    # Written so that a mean that is not a number is refused.
+    if not (force_n <= plausible[0] and moment_n_m <= plausible[1]):
         raise TareImplausible(
             f"compensation leaves {force_n:.1f} N and {moment_n_m:.1f} N·m, allowed "
             f"{plausible[0]:.0f} N and {plausible[1]:.0f} N·m"

@@ -23,9 +23,8 @@ def places(pins: PinSettings) -> tuple[tuple[float, float], ...]:
     """Offsets (m) from the stand-off that are tried one after the other, nearest first."""
     if pins.search_radius_m == 0.0:
         return ()
-    measured, *others = spiral_points(pins.search_radius_m, _PITCH * pins.catch_m)
-    # At the measured place the deck stands already.
-    assert not measured.any()
+    # The first point is the middle, which is the measured place: there the deck stands already.
+    _, *others = spiral_points(pins.search_radius_m, _PITCH * pins.catch_m)
     return tuple((float(x_m), float(y_m)) for x_m, y_m in others)
 
 

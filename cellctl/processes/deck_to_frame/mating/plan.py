@@ -22,10 +22,11 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 
 READING_BAND_N = 1.2
-"""The creep ends so far above F_t: tare and noise of a reading must not decide."""
+"""The creep ends so far above F_t, four standard deviations of a reading: noise must not decide
+whether the force of a seat was reached."""
 NOISE_BAND_N = 2.0
-"""The filtered force swings about its mean by so much: the creep keeps that far from the abort
-limit."""
+"""The filtered force swings about its mean by so much: a mean of 43 N may read 45 N for a moment
+(docs/mating.md, "The creep"). The creep keeps that far from the abort limit."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,13 +19,15 @@ from cellctl.processes.deck_to_frame.stations import DeckCell
 _log = log.get(__name__)
 
 LIFT_M = 0.06
-"""Height above the seat at which the lift ends; from there the arm moves as in free space."""
+"""Height above the seat at which the lift ends; from there the arm moves as in free space. Twice
+``LOW_M``, so that a deck that was lifted is surely not low any more."""
 SLOW_LIFT_M = 0.015
-"""Height up to which the lift is slow."""
+"""Height up to which the lift is slow: above the pins, which are shorter."""
 SLOW_SPEED_M_S = 2e-3
 """Speed of the stretch after the first: pins and edges are still near."""
 LOW_M = 0.03
-"""A deck less than this above its seat is lifted before it goes anywhere else."""
+"""A deck less than this above its seat is lifted before it goes anywhere else: above the stand-off,
+where a mating begins, and all that a mating can leave."""
 OVER_STATION_M = 0.1
 """A deck less than this above its seat is under the heads, where these stand over the station."""
 NEAR_STATION_M = 0.8

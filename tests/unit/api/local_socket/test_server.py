@@ -185,3 +185,15 @@ async def test_nothing_is_left_of_it(server: LocalServer, tmp_path: Path) -> Non
         assert await client.line() == b""
     assert not (tmp_path / "s").exists()
     await server.stop()
+
+
+async def test_clients_that_come_all_at_once_keep_to_the_limit(
+    server: LocalServer, tmp_path: Path
+) -> None:
+    opened = [asyncio.open_unix_connection(tmp_path / "s") for _ in range(4 * QUICK.clients)]
+    streams = await asyncio.gather(*opened)
+    for _ in range(20):
+        await asyncio.sleep(0.005)
+    assert len(server._clients) == QUICK.clients
+    for _, writer in streams:
+        writer.transport.abort()

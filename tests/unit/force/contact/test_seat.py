@@ -75,3 +75,11 @@ def test_an_edge_of_another_deck_has_another_moment() -> None:
     assert small.lateral_n == 32.0
     assert small.moment_n_m[0] == pytest.approx(75.0 * 0.1 + 2.75)
     assert small.moment_n_m[1] == pytest.approx(75.0 * 0.2 + 1.5)
+
+
+@pytest.mark.parametrize("index", range(6))
+def test_what_is_not_a_number_is_never_seated(index: int) -> None:
+    wrench = GOOD.copy()
+    wrench[index] = np.nan
+    assert judge(wrench)
+    assert judge(GOOD, gap_m=float("nan"))
