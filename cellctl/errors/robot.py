@@ -40,7 +40,7 @@ class StopFailed(RobotError):
     number = 304
     text = "Robot did not confirm a stop"
     cause = "Lost link or hung controller program."
-    remedy = "Use the emergency stop. Do not clear before the robot is known to stand still."
+    remedy = "Use the emergency stop. No Clear before the robot is known to stand still."
 
 
 class TargetOutOfBounds(RobotError):
@@ -61,7 +61,7 @@ class NotRearmed(RobotError):
     number = 306
     text = "Robot stop is latched"
     cause = "A stop was requested and nobody has re-armed the robot since."
-    remedy = "Clear the fault; the cell re-arms the robot when it is reset."
+    remedy = "Clear, then Reset: the cell re-arms the robot."
 
 
 class ControllerFault(RobotError):

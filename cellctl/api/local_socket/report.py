@@ -68,7 +68,9 @@ class RunReport(StrictModel):
     mode: str
     started: datetime
     result: str
-    """Empty while it is open."""
+    """As recorded; empty while it is open. A dry run that came to its end is recorded as bad."""
+    ended_as: str = ""
+    """The result in the words of lists: ``done, no part`` for such a dry run."""
 
 
 class StatusReport(StrictModel):
@@ -106,7 +108,8 @@ class StatusReport(StrictModel):
     """Robots and guard by name; what is wrong with each, empty when it is well."""
     calibrations: tuple[CalibrationReport, ...]
     result: str
-    """Result of the present or last job: ``none`` while it is open, else the ``run_result``."""
+    """Result of the present or last job: ``none`` while it is open, else the ``run_result``, or
+    ``done, no part`` after a dry run that came to its end."""
     last_run: RunReport | None
     good_parts: int
     records: str

@@ -23,6 +23,7 @@ from cellctl.errors import CellError
 from cellctl.errors.local import MessageMalformed
 from cellctl.fault_catalogue import known_fault
 from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.outcome import outcome
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.unit import UnitController
@@ -91,7 +92,7 @@ class Reporter:
             guard_touch="; ".join(stops[True]),
             links=live["links"],
             calibrations=calibrations,
-            result=unit.jobs.result.name.lower(),
+            result=_job_result(unit.jobs.result.name.lower(), last_run),
             last_run=last_run,
             good_parts=unit.parts,
             records=records,
@@ -126,6 +127,7 @@ class Reporter:
                 mode=head.mode,
                 started=head.started,
                 result=head.result or "",
+                ended_as=outcome(head.mode, head.result),
             )
             for head in heads
         ]
@@ -142,6 +144,12 @@ class Reporter:
             )
             for entry in inventory(self._unit.calibrations, utc_now())
         )
+
+
+def _job_result(result: str, last_run: RunReport | None) -> str:
+    """A dry run has made no part, which the line's register has as a bad one; nothing is wrong."""
+    same = last_run is not None and last_run.result == result
+    return last_run.ended_as if last_run is not None and same else result
 
 
 def _fault(error: CellError) -> FaultReport:

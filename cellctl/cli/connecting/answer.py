@@ -1,5 +1,6 @@
 """What one device has answered, or why not."""
 
+import re
 from collections.abc import Coroutine, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,6 +11,8 @@ from cellctl.cell.patience.calls import answer_within
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.local import OtherDevice
+
+_OF_A_DAEMON = re.compile(r"[;,.] then Clear and Reset\.?", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +61,14 @@ class Answer:
 
 def fault_as_json(fault: CellError) -> dict[str, Any]:
     """Number, words and facts."""
-    names = ("number", "text", "detail", "cause", "remedy")
-    return {name: getattr(fault, name) for name in names}
+    names = ("number", "text", "detail", "cause")
+    return {name: getattr(fault, name) for name in names} | {"remedy": remedy_here(fault)}
+
+
+def remedy_here(fault: CellError) -> str:
+    """The remedy without Clear and Reset: nothing is asked while a daemon runs that would take
+    them."""
+    return _OF_A_DAEMON.sub(". Then ask again.", fault.remedy)
 
 
 async def answered(path: str, driver: str, question: Coroutine[Any, Any, Answer]) -> Answer:

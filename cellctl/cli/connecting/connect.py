@@ -7,7 +7,7 @@ from rich.console import Console
 from rich.status import Status
 
 from cellctl.cli.cell_daemon import running_daemon
-from cellctl.cli.connecting.answer import Answer
+from cellctl.cli.connecting.answer import Answer, remedy_here
 from cellctl.cli.connecting.asking import ask_devices
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
@@ -87,4 +87,4 @@ def _show_one(console: Console, answer: Answer) -> None:
 def _show_fault(console: Console, fault: CellError) -> None:
     console.print(f"  {fault}", style="bold red", markup=False)
     console.print(f"    cause:  {fault.cause}", markup=False)
-    console.print(f"    remedy: {fault.remedy}", markup=False)
+    console.print(f"    remedy: {remedy_here(fault)}", markup=False)

@@ -89,7 +89,11 @@ async def test_a_part_is_assembled(rig: DaemonRig, operator: Operator) -> None:
     assert isinstance(await operator.ask(start), Taken)
     await rig.to(State.COMPLETED)
     report = await operator.status()
-    assert (report.state, report.mode, report.result) == ("COMPLETED", "PRODUCTION", "bad")
+    assert (report.state, report.mode, report.result) == (
+        "COMPLETED",
+        "PRODUCTION",
+        "done, no part",
+    )
     assert report.last_run is not None
     assert (report.last_run.number, report.last_run.serial) == (1, "SAT-7")
     entries = await rig.archive.do(audit)
@@ -219,6 +223,20 @@ async def test_what_is_broken_is_said_and_not_raised(
     assert "disk gone" in report.records
     assert "F632" in report.calibrations[0].problem
     assert [item.problem for item in report.calibrations[1:5]] == [""] * 4
+
+
+async def test_a_dry_run_that_came_to_its_end_is_not_called_bad(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    await rig.idle()
+    (recipe,) = rig.bench.as_cell.config.recipes
+    start = StartCommand(serial="SAT-7", recipe=recipe.name, dry_run=True)
+    assert isinstance(await operator.ask(start), Taken)
+    await rig.to(State.COMPLETED)
+    report = await operator.status()
+    assert report.result == "done, no part"
+    assert report.last_run is not None
+    assert (report.last_run.result, report.last_run.ended_as) == ("bad", "done, no part")
 
 
 async def test_the_touch_that_a_step_waits_for_is_told_as_what_it_is(

@@ -115,7 +115,11 @@ def test_an_absent_camera_keeps_nobody_from_being_asked(own: OwnCell) -> None:
     done = run(own)
     assert done.exit_code == 1
     assert f"F201 Device does not answer: camera, frame server 127.0.0.1:{port}" in done.stdout
-    assert "remedy: Check power, cable and the address" in done.stdout
+    assert (
+        "remedy: Check power, cable and the address in the cell file. Then ask again."
+        in done.stdout
+    )
+    assert "Clear and Reset" not in done.stdout, "no daemon runs that would take them"
     assert "3 of 4 devices answer" in done.stdout
     assert f"{SENSOR} by sri: answers" in done.stdout
 
