@@ -13,11 +13,8 @@ from typing import cast
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from benchmarks.insertion.contact_world import (
-    ContactWorld,
-    Injected,
-    SensorFault,
-)
+from benchmarks.insertion.contact_guard import SensorFault
+from benchmarks.insertion.contact_world import ContactWorld, Injected
 from benchmarks.insertion.cycles import SENSING, CycleCell
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
 from cellctl.cell.contact_motion.frames import ContactFrames
@@ -98,7 +95,7 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
     loop = ContactLoop(
         world.stream,
         cast(GuardPort, world.guard),
-        world.guard.give_in(frames),
+        world.tare(frames),
         frames,
         settings=contact_settings(cell.recipe, cell.plan, cell.settings),
         observer=log,

@@ -5,18 +5,21 @@ contact with everything above it. What is simpler: one delay and one lag stand f
 line, no links, no store, no second process. Time is the world's own, so a busy PC changes nothing.
 """
 
-from bisect import bisect_right
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
+from benchmarks.insertion.contact_guard import (
+    STEP_S,
+    TARE_STEPS,
+    InsertionGuard,
+    SensorFault,
+    SensorNoise,
+)
 from cellctl.cell.contact_motion.frames import ContactFrames
 from cellctl.geometry.pose import Array
-from cellctl.guard.limits import GuardLimits, Six
-from cellctl.guard.report import GuardSamples, GuardTrip, TareResult, TripReason
-from cellctl.guard.watch.detectors import FrozenDetector
+from cellctl.guard.report import TareResult
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamReport
 from fakes.scenes.socket.part import PegPart, nominal_fit
 from fakes.scenes.socket.peaks import ForcePeaks
@@ -26,15 +29,15 @@ from fakes.world.peg.attitude import pose_of
 from fakes.world.peg.fit import Fit
 from fakes.world.peg.held_peg import HeldPeg
 
-STEP_S = 1e-3
 PERIOD_S, DELAY_TICKS, LAG_S = 8e-3, 1, 5e-3
 """Timing of the stream; with the filter of 2 ms it has a dead time of 27 ms, as on the wire."""
 LIMITS = StreamLimits(step_m=5e-4, step_rad=5e-3, travel_m=0.1, travel_rad=0.5, loss_s=0.2)
-_BANDWIDTH_HZ = 200.0
 _WANDER_LENGTH_M = 5e-3
-_LATE_SHARE, _LATE_PERIODS = 2e-3, 2.0
+_LATE_SHARE, _LATE_PERIODS = 2e-3, 2
 """Ticks whose setpoint comes a period too late: the arm stands still for it."""
-_BLOCK = 4096
+_STEPS = round(PERIOD_S / STEP_S)
+_WAY_LEFT = np.exp(-STEP_S / LAG_S * np.arange(1, _LATE_PERIODS * _STEPS + 1))[:, None, None]
+"""Share of the way to a setpoint that is left after each step."""
 _SAME_BORE_M = 0.05e-3
 """A hole whose radius differs by more is another one."""
 
@@ -53,23 +56,6 @@ class Imperfections:
     height_m: float
     force_n: float
     moment_nm: float
-
-
-class SensorFault:
-    """A sensor that tells something else than what acts on it, from a moment on."""
-
-    def __init__(self, told: Callable[[Array, Array], Array]) -> None:
-        """``told``: what it tells for a true sample and for the last one before the fault."""
-        self.begins_s = np.inf
-        """Beginning on the clock of the world; set by whoever knows when."""
-        self._told, self._last = told, np.zeros(6)
-
-    def tell(self, sample: Array, now_s: float) -> Array:
-        """What the sensor tells for one true sample, shape (6,)."""
-        if now_s < self.begins_s:
-            self._last = sample
-            return sample
-        return self._told(sample, self._last)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,11 +94,13 @@ class ContactWorld:
         self._error_m = np.zeros(3)
         stiffness = robot_stiffness(scenario.compliance)
         grip_n = made.grip_n or scenario.peg.grip_force_n
-        self.peg = HeldPeg(self.fit, stiffness, pose_of(self._hole_T_peg()), grip_n=grip_n)
+        begins = pose_of(self._hole_inverse @ self.flange @ self._flange_T_peg)
+        self.peg = HeldPeg(self.fit, stiffness, begins, grip_n=grip_n)
         self.peaks = ForcePeaks()
         self.late = 0
         self.stream = InsertionStream(self)
-        self.guard = InsertionGuard(self, made.sensor)
+        noise = SensorNoise(imperfections.force_n, imperfections.moment_nm, rng)
+        self.guard = InsertionGuard(noise, made.sensor)
 
     @property
     def seated(self) -> bool:
@@ -129,33 +117,40 @@ class ContactWorld:
         self._waiting.append(target)
         self._wander(target)
         target = self._waiting.pop(0)
-        share = 1.0 - np.exp(-STEP_S / LAG_S)
-        for _ in range(round(PERIOD_S * (_LATE_PERIODS if late else 1.0) / STEP_S)):
+        steps = _STEPS * _LATE_PERIODS if late else _STEPS
+        # Steps of one tick are so small that blended matrices stay rotations.
+        flanges = target + _WAY_LEFT[:steps] * (self.flange - target)
+        self.flange = flanges[-1]
+        held = self._hole_inverse @ flanges @ self._flange_T_peg
+        held[:, :3, 3] += self._error_m
+        wrenches, tips_m, times_s = np.empty((steps, 6)), np.empty((steps, 3)), []
+        for step in range(steps):
+            self.peg.follow(pose_of(held[step]), STEP_S)
+            wrenches[step], tips_m[step] = self.peg.wrench, self.peg.pose[:3]
             self.now_s += STEP_S
-            # Steps of one tick are so small that blended matrices stay rotations.
-            self.flange = self.flange + share * (target - self.flange)
-            self.peg.follow(pose_of(self._hole_T_peg()), STEP_S)
-            wrench = self.peg.wrench
-            self.peaks.take(wrench)
-            self.guard.publish(wrench)
+            times_s.append(self.now_s)
+        self.peaks.take(wrenches)
+        self.guard.publish(times_s, flanges, self._about_base(wrenches, tips_m))
 
-    def about(self, point: Array, wrench: Array) -> Array:
-        """A wrench about the true tip, in the axes of the hole, about a point of the base and in
-        its axes."""
-        if not wrench.any():
-            return wrench
+    def tare(self, frames: ContactFrames) -> TareResult:
+        """Stand for as long as a tare takes, and give forces about the tip of these frames."""
+        tare = self.guard.give_in(frames)
+        times_s = []
+        for _ in range(TARE_STEPS):
+            self.now_s += STEP_S
+            times_s.append(self.now_s)
+        flanges = np.broadcast_to(self.flange, (TARE_STEPS, 4, 4))
+        self.guard.publish(times_s, flanges, np.zeros((TARE_STEPS, 6)))
+        return tare
+
+    def _about_base(self, wrenches: Array, tips_m: Array) -> Array:
+        """Wrenches about the true tip, in the axes of the hole, about the origin of the base and in
+        its axes; one row for each step."""
+        if not wrenches.any():
+            return wrenches
         turn = self._hole[:3, :3]
-        force = turn @ wrench[:3]
-        lever = turn @ np.array(self.peg.pose[:3]) + self._hole[:3, 3] - point
-        (lx, ly, lz), (fx, fy, fz) = lever.tolist(), force.tolist()
-        # What np.cross computes, in a tenth of its time; this is done for every millisecond.
-        moment = np.array([ly * fz - lz * fy, lz * fx - lx * fz, lx * fy - ly * fx])
-        return np.concatenate([force, turn @ wrench[3:] + moment])
-
-    def _hole_T_peg(self) -> Array:
-        held = self._hole_inverse @ self.flange @ self._flange_T_peg
-        held[:3, 3] += self._error_m
-        return np.asarray(held)
+        force, moment = wrenches[:, :3] @ turn.T, wrenches[:, 3:] @ turn.T
+        return np.hstack([force, moment + np.cross(tips_m @ turn.T + self._hole[:3, 3], force)])
 
     def _wander(self, target: Array) -> None:
         """The arm is not quite where its encoders say; the error changes with the way."""
@@ -165,12 +160,6 @@ class ContactWorld:
         sigma_m = np.array([one.repeatability_m, one.repeatability_m, one.height_m])
         fresh = np.sqrt(1.0 - keep**2) * sigma_m * self._rng.normal(0.0, 1.0, 3)
         self._error_m = keep * self._error_m + fresh
-
-    def noise(self) -> Array:
-        """Noise of a block of samples of the sensor, shape (n, 6)."""
-        one = self._imperfections
-        sigma = np.repeat([one.force_n, one.moment_nm], 3)
-        return np.asarray(self._rng.normal(0.0, 1.0, (_BLOCK, 6)) * sigma)
 
 
 class InsertionStream(PoseStream):
@@ -184,7 +173,7 @@ class InsertionStream(PoseStream):
     def report(self) -> StreamReport:
         """Where the arm is by its encoders."""
         world = self._world
-        flange = RigidTransform.from_matrix(world.flange)
+        flange = RigidTransform(_orthonormal(world.flange), normalize=False, copy=False)
         return StreamReport(world.now_s, self._tick, flange, world.late, world.late, self._sent_s)
 
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
@@ -195,87 +184,10 @@ class InsertionStream(PoseStream):
         return self.report
 
 
-class InsertionGuard:
-    """The sensor through its bandwidth and noise, and the limits of the guard on it."""
-
-    def __init__(self, world: ContactWorld, fault: SensorFault | None) -> None:
-        self._world, self._fault = world, fault
-        self._frozen: FrozenDetector | None = None
-        self._trip: GuardTrip | None = None
-        self._frames: ContactFrames | None = None
-        self._limits: GuardLimits | None = None
-        self._block, self._used = world.noise(), 0
-        self._felt, self._filtered = np.zeros(6), np.zeros(6)
-        self._share = 1.0 - np.exp(-STEP_S * 2 * np.pi * _BANDWIDTH_HZ)
-        self._times: list[float] = []
-        self._wrenches: list[Array] = []
-
-    def give_in(self, frames: ContactFrames) -> TareResult:
-        """Give forces about the tip of these frames from now on, as after a tare at standstill."""
-        self._frames = frames
-        self._times, self._wrenches = [], []
-        for _ in range(60):
-            self._world.now_s += STEP_S
-            self.publish(np.zeros(6))
-        return TareResult(np.zeros(6), self._block.std(axis=0), 500)
-
-    def publish(self, wrench: Array) -> None:
-        """A millisecond has passed with this wrench on the peg."""
-        if self._frames is None:
-            return
-        if self._used == len(self._block):
-            self._block, self._used = self._world.noise(), 0
-        noise = self._block[self._used]
-        self._used += 1
-        tip = self._world.flange @ self._frames.flange_T_tip.as_matrix()
-        about = self._world.about(tip[:3, 3], wrench)
-        # Rows times a matrix: the inverse rotation.
-        turned = np.ravel(about.reshape(2, 3) @ tip[:3, :3])
-        self._felt = self._felt + self._share * (turned - self._felt)
-        sample = self._felt + noise
-        if self._fault is not None:
-            sample = self._fault.tell(sample, self._world.now_s)
-        self._times.append(self._world.now_s)
-        self._wrenches.append(sample)
-        self._watch(sample)
-
-    def _watch(self, sample: Array) -> None:
-        limits = self._limits
-        if limits is None:
-            return
-        if self._frozen is not None and self._frozen.update(_six(sample)):
-            frozen = GuardTrip(TripReason.SENSOR_FROZEN, self._world.now_s, "")
-            self._trip = self._trip or frozen
-        share = STEP_S / (limits.filter_s + STEP_S)
-        self._filtered = self._filtered + share * (sample - self._filtered)
-        for reason, seen, most in (
-            (TripReason.FILTERED_LIMIT, self._filtered, limits.filtered),
-            (TripReason.RAW_LIMIT, sample, limits.raw),
-        ):
-            if self._trip is None and bool((np.abs(seen) > most).any()):
-                self._trip = GuardTrip(reason, self._world.now_s, f"{np.abs(seen).max():.1f}")
-
-    @property
-    def trip(self) -> GuardTrip | None:
-        """The latched trip."""
-        return self._trip
-
-    def samples(self, since_s: float) -> GuardSamples:
-        """See ``GuardPort``."""
-        first = bisect_right(self._times, since_s)
-        wrench = np.array(self._wrenches[first:]).reshape(-1, 6)
-        times = np.array(self._times[first:])
-        return GuardSamples(times, wrench, wrench.copy(), np.zeros(len(wrench)), overrun=False)
-
-    async def arm(self, limits: GuardLimits) -> None:
-        """Watch these limits from now on."""
-        self._limits, self._frozen = limits, FrozenDetector(limits.frozen_samples)
-
-    async def disarm(self) -> None:
-        """Watch nothing."""
-        self._limits = None
-
-
-def _six(values: Array) -> Six:
-    a, b, c, d, e, f = values.tolist()
-    return a, b, c, d, e, f
+def _orthonormal(pose: Array) -> Array:
+    """The pose whose axes are square again after a blend: a step of Newton's method, which leaves
+    the square of an error that is 1e-9 for the turns of a tick."""
+    made = pose.copy()
+    axes = pose[:3, :3]
+    made[:3, :3] = axes @ (1.5 * np.eye(3) - 0.5 * (axes.T @ axes))
+    return made

@@ -191,7 +191,7 @@ class _Cycle:
 
     def _motions(self, frames: ContactFrames) -> StreamedContact:
         world, cell = self._world, self._cell
-        tare = world.guard.give_in(frames)
+        tare = world.tare(frames)
         loop = ContactLoop(
             world.stream,
             cast(GuardPort, world.guard),

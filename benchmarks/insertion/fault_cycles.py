@@ -6,7 +6,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from benchmarks.insertion.contact_world import Injected, SensorFault
+from benchmarks.insertion.contact_guard import SensorFault
+from benchmarks.insertion.contact_world import Injected
 from benchmarks.insertion.cycles import CycleCell, CycleInjection
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from fakes.scenes.socket.part import draw_part, nominal_fit

@@ -88,7 +88,7 @@ class SocketScene(World[SocketScenario]):
             return np.zeros(6)
         self._tool.advance(flange, moving=moving)
         self.peg.follow(pose_of(self._hole_inverse @ flange @ self._flange_T_peg), STEP_S)
-        self.peaks.take(self.peg.wrench)
+        self.peaks.take(self.peg.wrench[None, :])
         return np.asarray(self._tool.load + self._at_sensor(flange))
 
     def _at_sensor(self, flange: Array) -> Array:
