@@ -30,7 +30,9 @@ from fakes.world.peg.fit import Fit
 from fakes.world.peg.held_peg import HeldPeg
 
 PERIOD_S, DELAY_TICKS, LAG_S = 8e-3, 1, 5e-3
-"""Timing of the stream; with the filter of 2 ms it has a dead time of 27 ms, as on the wire."""
+"""Timing of the stream."""
+DEAD_TIME_S = 27e-3
+"""That of the stream with the filter of 2 ms, as on the wire."""
 LIMITS = StreamLimits(step_m=5e-4, step_rad=5e-3, travel_m=0.1, travel_rad=0.5, loss_s=0.2)
 _WANDER_LENGTH_M = 5e-3
 _LATE_SHARE, _LATE_PERIODS = 2e-3, 2

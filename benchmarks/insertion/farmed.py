@@ -1,11 +1,15 @@
 """What the campaigns of cycles, traps and faults share: options, processes, lines of JSON.
 
 A campaign that is given a file goes on where it was ended: each result is a line there as soon as
-it is known, and what has a line is not run again. A file belongs to one state of the code.
+it is known, and what has a line is not run again. Ctrl-C ends it cleanly. Each line has the
+software that made it; where a file has lines of several, that is told.
 """
 
 import argparse
 import json
+import signal
+import sys
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
@@ -17,8 +21,10 @@ from typing import Any, Generic, TypeVar
 from rich.progress import track
 
 from benchmarks.insertion.cycles import CycleCell
+from cellctl.version import software
 
 WORKERS = 2
+_SOFTWARE = "software"
 
 Case = TypeVar("Case")
 Job = TypeVar("Job")
@@ -73,25 +79,45 @@ def farmed(
     out: Path | None = found.out
     done = {} if out is None else dict(kept(line, out))
     left = [job for job in jobs if job not in done]
-    with ProcessPoolExecutor(found.workers, mp_context=get_context("spawn")) as pool:
+    # Ctrl-C reaches the workers, too: they leave it to this process, which cancels what waits.
+    pool = ProcessPoolExecutor(
+        found.workers,
+        mp_context=get_context("spawn"),
+        initializer=signal.signal,
+        initargs=(signal.SIGINT, signal.SIG_IGN),
+    )
+    try:
         results = track(pool.map(run, left), what, len(left))
         for job, result in zip(left, results, strict=True):
             done[job] = result
             if out is not None:
-                _keep(line.written(job, result), out)
+                _keep({**line.written(job, result), _SOFTWARE: software()}, out)
+    except KeyboardInterrupt:
+        counted = f"ended after {sum(job in done for job in jobs)} of {len(jobs)} {what}"
+        sys.exit(counted if out is None else f"{counted}; the same command goes on with {out}")
+    finally:
+        pool.shutdown(cancel_futures=True)
+    if out is not None:
+        for name, count in Counter(one[_SOFTWARE] for one in _records(out)).items():
+            print(f"{out}: {count} {what} by {name}")
     return [done[job] for job in jobs]
 
 
 def kept(line: Line[Job, Result], out: Path) -> Iterator[tuple[Job, Result]]:
     """What the lines of a file say; a file that is not there has none."""
+    for record in _records(out):
+        yield line.read({name: value for name, value in record.items() if name != _SOFTWARE})
+
+
+def _records(out: Path) -> Iterator[dict[str, Any]]:
     text = out.read_text("utf-8") if out.exists() else ""
     for one in text.splitlines():
         try:
-            record = json.loads(one)
+            record: dict[str, Any] = json.loads(one)
         except json.JSONDecodeError:
             # Half a line, of a campaign that was killed: that job is run again.
             continue
-        yield line.read(record)
+        yield record
 
 
 def _keep(record: Mapping[str, Any], out: Path) -> None:

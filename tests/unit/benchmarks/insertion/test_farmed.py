@@ -1,6 +1,9 @@
 """A campaign goes on where it was ended, and its lines say what was found."""
 
 import json
+import os
+import signal
+import time
 from argparse import Namespace
 from collections.abc import Callable
 from pathlib import Path
@@ -14,6 +17,7 @@ from benchmarks.insertion.cycles import CycleOutcome
 from benchmarks.insertion.farmed import Line, farmed, jobs_of, kept
 from benchmarks.insertion.fault_cycles import CycleFault
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
+from cellctl.version import software
 from fakes.scenes.socket.peaks import ForcePeaks
 
 Job = tuple[str, int]
@@ -30,16 +34,43 @@ NUMBERS: Line[Job, int] = Line(
 )
 
 
-def test_what_has_a_line_is_not_run_again(tmp_path: Path) -> None:
+def test_what_has_a_line_is_not_run_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "lines.json"
-    out.write_text('{"case": "b", "seed": 3, "result": -1}\n{"case": "a", "se', "utf-8")
+    begun = '{"case": "b", "seed": 3, "result": -1, "software": "another"}\n{"case": "a", "se'
+    out.write_text(begun, "utf-8")
     jobs = jobs_of("ab", 3, 2)
     assert jobs == [("a", 3), ("b", 3), ("a", 4), ("b", 4)]
     found = Namespace(out=out, workers=1)
     assert farmed(doubled, jobs, "numbers", NUMBERS, found) == [6, -1, 8, 8]
     assert dict(kept(NUMBERS, out)) == {("b", 3): -1, ("a", 3): 6, ("a", 4): 8, ("b", 4): 8}
     assert farmed(doubled, jobs, "numbers", NUMBERS, found) == [6, -1, 8, 8]
-    assert len(out.read_text("utf-8").splitlines()) == 5
+    lines = out.read_text("utf-8").splitlines()
+    assert len(lines) == 5
+    assert json.loads(lines[-1])["software"] == software()
+    assert f"1 numbers by another\n{out}: 3 numbers by {software()}" in capsys.readouterr().out
+
+
+def ended_by_the_operator(job: Job) -> int:
+    """Ctrl-C in this process while the fourth job runs."""
+    if job[1] == 3:
+        time.sleep(0.5)
+        os.kill(os.getppid(), signal.SIGINT)
+        time.sleep(0.5)
+    return job[1]
+
+
+def test_an_interrupted_campaign_keeps_what_it_has(tmp_path: Path) -> None:
+    out = tmp_path / "lines.json"
+    jobs = [("a", seed) for seed in range(40)]
+    with pytest.raises(
+        SystemExit, match=r"ended after \d+ of 40 numbers; the same command goes on"
+    ):
+        farmed(ended_by_the_operator, jobs, "numbers", NUMBERS, Namespace(out=out, workers=1))
+    done = dict(kept(NUMBERS, out))
+    assert ("a", 0) in done
+    assert len(done) < len(jobs)
 
 
 PEAKS = {CyclePhase.SEARCH: ForcePeaks({1: 9.0, 3: 8.0, 20: 7.0}, {1: 0.1, 3: 0.1, 20: 0.1})}
