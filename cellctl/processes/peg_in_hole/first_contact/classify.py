@@ -96,16 +96,21 @@ async def classify_contact(
     for x, y in ((1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)):
         touched = await motions.touch(np.array([x, y, 0.0]), travel_m, threshold_n, speed_m_s)
         resisted.append(touched.ended is Ended.FORCE)
-        await _return(motions, begun, press_n, 2 * threshold_n)
+        await _return(motions, begun, press_n, 2 * threshold_n, speed_m_s)
     first, second, third, fourth = resisted
     found = class_by_touches((first, second, third, fourth), depth_m, task.fit.entry_depth_m, felt)
     return ClassifiedContact(begun, found)
 
 
 async def _return(
-    motions: ContactMotions, begun: ContactSample, press_n: float, side_force_n: float
+    motions: ContactMotions,
+    begun: ContactSample,
+    press_n: float,
+    side_force_n: float,
+    speed_m_s: float,
 ) -> None:
-    # Between the touches the peg may have sunk behind a wall: it is not pressed against that.
+    # Between the touches the peg may have sunk behind a wall: it is not pressed against that, and
+    # meets it no faster than in a touch.
     back = begun.task_position_tip_m[None, :2]
-    speed_m_s = _TRAVEL_M / _SETTLE_S
+    speed_m_s = min(_TRAVEL_M / _SETTLE_S, speed_m_s)
     await motions.slide(back, press_n, speed_m_s, lambda _sample: False, side_force_n)

@@ -3,6 +3,8 @@ import asyncio
 import numpy as np
 import pytest
 
+from cellctl.cell.contact_motion.motions import Condition, ContactMotion
+from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.first_contact.classify import (
     ContactClass,
     class_by_force,
@@ -10,6 +12,7 @@ from cellctl.processes.peg_in_hole.first_contact.classify import (
     classify_contact,
     light_threshold_n,
 )
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from tests.rigs.insertion.kinematic import KinematicMotions
 from tests.rigs.insertion.surface import Truth
 from tests.rigs.insertion.traps import PegState, StandingPeg
@@ -61,3 +64,30 @@ def test_a_peg_on_the_face_is_on_the_face() -> None:
 def test_a_peg_between_its_walls_is_aligned() -> None:
     motions = StandingPeg(pin(), PegState.INSERTED, np.random.default_rng(1))
     assert asyncio.run(classify_contact(motions, pin(), 1e-3)).found is ContactClass.ALIGNED
+
+
+class _SlideSpeeds(StandingPeg):
+    """Keeps the speeds of all slides."""
+
+    def __init__(self, task: SearchTask) -> None:
+        super().__init__(task, PegState.INSERTED, np.random.default_rng(1))
+        self.speeds_m_s: list[float] = []
+
+    async def slide(
+        self,
+        way_m: Array,
+        press_n: float,
+        speed_m_s: float,
+        until: Condition,
+        side_force_n: float,
+    ) -> ContactMotion:
+        self.speeds_m_s.append(speed_m_s)
+        return await super().slide(way_m, press_n, speed_m_s, until, side_force_n)
+
+
+@pytest.mark.parametrize("touch_m_s", [0.05e-3, 0.4e-3])
+def test_a_stiff_arm_returns_no_faster_than_it_touches(touch_m_s: float) -> None:
+    """What stands in the way back is a wall, as in a touch."""
+    motions = _SlideSpeeds(pin())
+    asyncio.run(classify_contact(motions, pin(), touch_m_s))
+    assert motions.speeds_m_s == [touch_m_s] * 4
