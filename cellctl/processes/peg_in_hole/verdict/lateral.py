@@ -11,12 +11,15 @@ from cellctl.cell.contact_motion.motions import (
     ContactSample,
     Ended,
 )
+from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 
 _PRESS_N = 2.0
-_SPEED_M_S = 0.5e-3
+_FASTEST_M_S = 0.5e-3
+_SPARE_SHARE = 0.5
+"""Share of the force between push and limit that a push may take until the arm has answered."""
 _LEAST_PUSH_N = 3.0
 MARGIN_M = 0.1e-3
 _SETTLE_S = 1.0
@@ -41,14 +44,22 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
     push_n = push_force_n(task.cell)
     yields_m = push_n / task.cell.stiffness_n_m
     begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
+    speed_m_s = _push_speed_m_s(task, push_n)
     pushes: dict[Side, ContactMotion | None] = {}
     for axis, sign in SIDES:
         direction = np.zeros(3)
         direction[axis] = sign
         # The second push begins at the first contact and so has to undo what yielded there.
         way_m = 2 * task.fit.clearance_m + 2 * yields_m + 2 * MARGIN_M
-        pushes[axis, sign] = await motions.touch(direction, way_m, push_n, _SPEED_M_S)
+        pushes[axis, sign] = await motions.touch(direction, way_m, push_n, speed_m_s)
     return capture_of(begun, pushes, task)
+
+
+def _push_speed_m_s(task: SearchTask, push_n: float) -> float:
+    """So slow that what the push grows by until the arm has answered stays far below the limit."""
+    growth_n = _SPARE_SHARE * (task.limits.insertion_n - push_n)
+    cell = task.cell
+    return min(_FASTEST_M_S, touch_speed_m_s(cell.stiffness_n_m, cell.dead_time_s, growth_n))
 
 
 def capture_of(

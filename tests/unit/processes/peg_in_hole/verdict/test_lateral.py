@@ -1,0 +1,50 @@
+"""Pushes to the sides: how fast they may be."""
+
+import asyncio
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cellctl.cell.contact_motion.motions import ContactMotion
+from cellctl.geometry.pose import Array
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture, push_force_n
+from tests.rigs.insertion.traps import PegState, StandingPeg
+from tests.unit.processes.peg_in_hole.tasks import pin
+
+
+class _PushSpeeds(StandingPeg):
+    """Keeps the speeds of all pushes."""
+
+    def __init__(self, task: SearchTask) -> None:
+        super().__init__(task, PegState.INSERTED, np.random.default_rng(1))
+        self.speeds_m_s: list[float | None] = []
+
+    async def touch(
+        self, direction: Array, travel_m: float, force_n: float, speed_m_s: float | None = None
+    ) -> ContactMotion:
+        self.speeds_m_s.append(speed_m_s)
+        return await super().touch(direction, travel_m, force_n, speed_m_s)
+
+
+def _speeds(task: SearchTask) -> list[float]:
+    motions = _PushSpeeds(task)
+    assert asyncio.run(measure_capture(motions, task)).resisted == 4
+    return [speed for speed in motions.speeds_m_s if speed is not None]
+
+
+def test_a_soft_arm_pushes_as_fast_as_the_study_allows() -> None:
+    assert _speeds(pin(stiffness_n_m=1e5)) == [0.5e-3] * 4
+
+
+@pytest.mark.parametrize("insertion_n", [20.0, 40.0])
+def test_a_push_of_a_stiff_arm_stays_below_the_limit(insertion_n: float) -> None:
+    """What it grows by until the arm has answered counts."""
+    task = pin(stiffness_n_m=2e6, dead_time_s=0.04)
+    task = replace(task, limits=replace(task.limits, insertion_n=insertion_n))
+    grows_s = task.cell.dead_time_s + 0.03
+    for speed_m_s in _speeds(task):
+        grows_n = task.cell.stiffness_n_m * speed_m_s * grows_s
+        assert push_force_n(task.cell) + grows_n < insertion_n
+        assert grows_n > 1.0
