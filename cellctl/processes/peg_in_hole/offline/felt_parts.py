@@ -106,11 +106,13 @@ def _first_contact(after: Samples, side: Side, task: JudgedTask) -> int | None:
 def _pushed(
     after: Samples, side: Side, contact: int | None, task: JudgedTask
 ) -> ContactMotion | None:
-    if contact is not None:
-        return ContactMotion(Ended.FORCE, (after[contact],))
     if not after:
         return None
     way_m = _along(after, side)
+    if contact is not None:
+        # From where the way along that side began: its rise tells how arm and contact yield.
+        begin = int(np.argmin(way_m[: contact + 1]))
+        return ContactMotion(Ended.FORCE, tuple(after[begin : contact + 1]))
     # As far as a push of the process goes that meets nothing.
     yields_m = push_force_n(task.cell) / task.cell.stiffness_n_m
     whole_m = 2 * task.fit.clearance_m + yields_m + MARGIN_M

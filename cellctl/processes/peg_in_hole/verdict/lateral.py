@@ -15,6 +15,7 @@ from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
+from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST, yielded_m
 
 _PRESS_N = 2.0
 _FASTEST_M_S = 0.5e-3
@@ -50,7 +51,7 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
         direction = np.zeros(3)
         direction[axis] = sign
         # The second push begins at the first contact and so has to undo what yielded there.
-        way_m = 2 * task.fit.clearance_m + 2 * yields_m + 2 * MARGIN_M
+        way_m = 2 * task.fit.clearance_m + 2 * SOFTEST * yields_m + 2 * MARGIN_M
         pushes[axis, sign] = await motions.touch(direction, way_m, push_n, speed_m_s)
     return capture_of(begun, pushes, task)
 
@@ -73,7 +74,6 @@ def capture_of(
     resisted = sum(push.ended is Ended.FORCE for push in made.values())
     # A side that gave way says enough, whatever the others would have said.
     known = len(made) == len(SIDES) or resisted < len(made)
-    yields_m = push_force_n(task.cell) / task.cell.stiffness_n_m
     depths = [push.last.task_position_tip_m[2] for push in made.values()]
     begun_m = float(begun.task_position_tip_m[2])
     # Between two opposite pushes the force must change by both of them. A sensor that is dead shows
@@ -82,8 +82,8 @@ def capture_of(
     known_n = [change_n for change_n in changes_n if not isnan(change_n)]
     return LateralCapture(
         resisted=resisted if known else None,
-        play_x_m=_play_m(pushes, 0, yields_m),
-        play_y_m=_play_m(pushes, 1, yields_m),
+        play_x_m=_play_m(pushes, 0, task.cell),
+        play_y_m=_play_m(pushes, 1, task.cell),
         depth_change_m=max((abs(float(depth) - begun_m) for depth in depths), default=nan),
         force_change_sigmas=max(known_n, default=nan) / task.cell.force_sigma_n,
     )
@@ -97,7 +97,7 @@ def _force_change_n(pushes: Mapping[Side, ContactMotion | None], axis: int) -> f
 
 
 def _play_m(
-    pushes: Mapping[Side, ContactMotion | None], axis: int, yields_m: float
+    pushes: Mapping[Side, ContactMotion | None], axis: int, cell: JudgedCell
 ) -> float | None:
     first, second = pushes.get((axis, 1.0)), pushes.get((axis, -1.0))
     if first is None or second is None:
@@ -105,5 +105,9 @@ def _play_m(
     if not first.ended is second.ended is Ended.FORCE:
         return None
     apart = first.last.task_position_tip_m[axis] - second.last.task_position_tip_m[axis]
-    # Each push ends beyond its wall by what the arm yields under it.
-    return float(apart) - 2 * yields_m
+    # Each push ends beyond its wall by what arm and contact yield under it.
+    yields_m = [
+        yielded_m(push.samples, axis, sign, push_force_n(cell), cell.stiffness_n_m)
+        for push, sign in ((first, 1.0), (second, -1.0))
+    ]
+    return float(apart) - sum(yields_m)
