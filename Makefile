@@ -83,6 +83,7 @@ campaign-insertion: venv
 	$(BIN)/python -m benchmarks.insertion.cycle_campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.insertion.trap_campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.insertion.fault_campaign $(if $(QUICK),--quick)
+	$(BIN)/python -m benchmarks.insertion.task_sweep $(if $(QUICK),--quick)
 
 # A hundred random cells take hours, for MuJoCo looks at every way each millimetre. N cells.
 campaign-planning: N = 100

@@ -56,13 +56,17 @@ class RandomTask:
 
 _TRUTHS: tuple[Truth | CycleFault, ...] = (*Truth, *CycleFault)
 _AS_TOLD_SHARE = 0.4
+_SLUGGISH_SHARE, _SLUGGISH = 0.1, 4.0
+"""Cells that are told a dead time so many times as long; stiff ones refuse tight holes then."""
 
 
 class Draws:
     """Draws of one task."""
 
-    def __init__(self, rng: np.random.Generator) -> None:
-        self.rng = rng
+    def __init__(self, seed: int) -> None:
+        self.rng = np.random.default_rng([seed, 91])
+        drawn = np.random.default_rng([seed, 92]).random()
+        self.sluggish = _SLUGGISH if drawn < _SLUGGISH_SHARE else 1.0
 
     def between(self, low: float, high: float) -> float:
         """Uniform."""
@@ -82,7 +86,7 @@ def random_task(seed: int) -> RandomTask:
 
     Raises what refuses a recipe before any motion.
     """
-    draws = Draws(np.random.default_rng([seed, 91]))
+    draws = Draws(seed)
     plug = draws.chance(0.3)
     fit = _plug(draws) if plug else _pin(draws)
     truth: Truth | CycleFault = Truth.AS_TOLD
@@ -163,7 +167,7 @@ def _cell(
     told_n_mm = 1e-3 * axial * draws.between(1.0, 1.3)
     settings = shipped.settings.model_dump(exclude_unset=True) | {
         "stiffness_n_mm": told_n_mm,
-        "dead_time_ms": 1e3 * DEAD_TIME_S * draws.between(1.0, 1.5),
+        "dead_time_ms": 1e3 * DEAD_TIME_S * draws.between(1.0, 1.5) * draws.sluggish,
         "repeatability_mm": repeatability,
         "height_sigma_mm": height_sigma,
         "force_sigma_n": 0.5 * noise_n,
