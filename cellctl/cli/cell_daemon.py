@@ -6,7 +6,7 @@ from cellctl.api.local_socket.report import StatusReport
 from cellctl.api.local_socket.socket_file import default_path
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.config import CellConfig
-from cellctl.errors.local import DaemonNotReached
+from cellctl.errors.local import CellInUse, DaemonNotReached
 
 
 def client_of(cell: CellConfig, socket: Path | None) -> DaemonClient:
@@ -15,6 +15,13 @@ def client_of(cell: CellConfig, socket: Path | None) -> DaemonClient:
     stated = Path(cell.local_api.socket) if cell.local_api.socket else None
     beside = default_path(Path(cell.data_dir))
     return DaemonClient(socket or stated or (beside if beside.exists() else None))
+
+
+def require_no_daemon(cell: CellConfig, socket: Path | None) -> None:
+    """Raise ``CellInUse`` while a daemon of this cell runs, before anything of it is asked."""
+    report = running_daemon(cell, socket)
+    if report is not None:
+        raise CellInUse(f"the daemon of {cell.name} runs and is {report.state}")
 
 
 def running_daemon(cell: CellConfig, socket: Path | None) -> StatusReport | None:

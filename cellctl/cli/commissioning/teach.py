@@ -12,6 +12,7 @@ from rich.console import Console
 
 from cellctl.atomic_files import remove_durably, write_durably
 from cellctl.cell.robot_reports import joints_deg, state_as_json
+from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, problems
@@ -40,6 +41,7 @@ def teach(
     of the file stay. Run it without the daemon.
     """
     cell = cell_with(cell_file, name)
+    require_no_daemon(cell, None)
     console = Console(soft_wrap=True, highlight=False)
     if as_json or not poses:
         compared = asyncio.run(_compared(cell, name))

@@ -6,12 +6,11 @@ from pathlib import Path
 from rich.console import Console
 from rich.status import Status
 
-from cellctl.cli.cell_daemon import running_daemon
+from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.connecting.answer import Answer, remedy_here
 from cellctl.cli.connecting.asking import ask_devices
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
-from cellctl.errors.local import CellInUse
 
 LEFT_AS_FOUND = (
     "Nothing was moved, switched, re-armed or acknowledged. The links have ended with this "
@@ -25,9 +24,7 @@ def asked(cell: CellConfig, cell_file: Path, socket: Path | None) -> list[Answer
 
     Raises ``CellInUse`` while a daemon of this cell runs, before anything is asked.
     """
-    report = running_daemon(cell, socket)
-    if report is not None:
-        raise CellInUse(f"the daemon of {cell.name} runs and is {report.state}")
+    require_no_daemon(cell, socket)
     waiting: list[str] = []
     with Console(stderr=True).status("connecting") as status:
         return asyncio.run(ask_devices(cell, cell_file.parent, _Waiting(status, waiting)))

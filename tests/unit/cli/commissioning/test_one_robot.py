@@ -25,8 +25,10 @@ from cellctl.api.local_socket.messages import (
 from cellctl.cli.commands import whole_app
 from cellctl.cli.commissioning.teach import write_pose
 from cellctl.errors.config import ConfigInvalid, FileInvalid
+from cellctl.errors.local import CellInUse
 from fakes.demo.control import Control
 from tests.rigs.wire.ports import free_ports
+from tests.unit.cli.agreeable import AT_REST, Agreeable, listening
 
 CONFIG = Path(__file__).parents[4] / "config"
 
@@ -156,6 +158,20 @@ def test_the_daemon_of_another_cell_is_not_asked_twice(cell_file: Path, tmp_path
     words = ("--seconds", 0.5, "--json", "--socket", tmp_path / "other.sock")
     found = heard(run("robot", cell_file, "arm", *words))
     assert found["source"] == "connected without a daemon"
+
+
+def test_teaching_beside_a_daemon_names_the_daemon_and_not_a_port(
+    cell_file: Path, tmp_path: Path
+) -> None:
+    text = cell_file.read_text(encoding="utf-8")
+    api = f'[local_api]\nsocket = "{tmp_path / "s"}"\n\n[robots.arm]\n'
+    cell_file.write_text(text.replace("[robots.arm]\n", api, 1), encoding="utf-8")
+    daemon = Agreeable(shows=AT_REST | {"cell": "small-cell"})
+    with (
+        listening(tmp_path / "s", daemon),
+        pytest.raises(CellInUse, match="the daemon of small-cell runs and is STOPPED"),
+    ):
+        run("teach", cell_file, "arm")
 
 
 @pytest.mark.usefixtures("watched")
