@@ -1,5 +1,6 @@
 """`cellctl calibrate invalidate`: say that a calibration is worthless, whatever its date."""
 
+import os
 from contextlib import closing
 from pathlib import Path
 from typing import Annotated
@@ -23,7 +24,12 @@ def invalidate(
     *,
     reason: Annotated[str, typer.Option(help="What happened; the operator will read it.")],
     by: Annotated[str, typer.Option(help="Who says so, for the audit log.")] = "operator",
-    cell: Annotated[Path, typer.Option(help="The cell's TOML file.")] = SERVICE_CELL,
+    cell: Annotated[
+        Path | None, typer.Option(help=f"The cell's TOML file; default: {SERVICE_CELL}.")
+    ] = None,
+    calibration_dir: Annotated[
+        Path | None, typer.Option(help="Calibrations; default: calibration_dir of the cell file.")
+    ] = None,
     data_dir: Annotated[
         Path | None, typer.Option(help="Run store; default: data_dir of the cell file.")
     ] = None,
@@ -35,8 +41,13 @@ def invalidate(
     # The reason is all that an operator will later see of this decision.
     if not reason.strip():
         raise typer.BadParameter("say what happened", param_hint="--reason")
-    config = load_cell(cell)
-    store = CalibrationStore(cell.parent / config.calibration_dir, calibration_kinds(config))
+    if cell is None and not os.path.exists(SERVICE_CELL):
+        said = f"no {SERVICE_CELL} is seen by this user; name the cell file"
+        raise typer.BadParameter(said, param_hint="--cell")
+    file = cell or SERVICE_CELL
+    config = load_cell(file)
+    folder = calibration_dir or file.parent / config.calibration_dir
+    store = CalibrationStore(folder, calibration_kinds(config))
     kind = store.named(name)
     # The calibration first and the audit log after it: without the log the cell is still safe from
     # a bad calibration, the other way round it is not.

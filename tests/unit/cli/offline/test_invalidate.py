@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 from cellctl.calibration.store.marker import require_not_invalidated
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cli.commands import whole_app
+from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.cli.os_user import terminal_user
 from cellctl.errors.calibration import CalibrationInvalidated, CalibrationMissing
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS
@@ -51,6 +52,24 @@ def test_production_is_refused_and_the_store_knows_who_said_so(cell: Path) -> No
     store.close()
     assert (entry.actor, entry.detail["by"]) == (terminal_user(), "OP-3")
     assert known.kind == "head_1"
+
+
+def test_the_calibrations_of_a_demonstration_lie_elsewhere(cell: Path) -> None:
+    elsewhere = cell.parent / "run" / "calibration"
+    renew_calibrations(elsewhere)
+    words = ["calibrate", "invalidate", "head_1", *ARGUMENTS, "--cell", str(cell)]
+    words += ["--calibration-dir", str(elsewhere)]
+    assert CliRunner().invoke(whole_app(), words, catch_exceptions=False).exit_code == 0
+    require_not_invalidated(cell.parent / "calibration", "head_1")
+    with pytest.raises(CalibrationInvalidated):
+        require_not_invalidated(elsewhere, "head_1")
+
+
+@pytest.mark.skipif(SERVICE_CELL.exists(), reason="this PC has a cell")
+def test_without_a_service_the_cell_file_is_asked_for() -> None:
+    done = CliRunner().invoke(whole_app(), ["calibrate", "invalidate", "head_1", *ARGUMENTS])
+    assert done.exit_code == 2
+    assert "--cell" in done.output
 
 
 def test_it_holds_without_a_store_too(cell: Path) -> None:
