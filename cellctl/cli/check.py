@@ -1,6 +1,7 @@
 """`cellctl check`: everything that is wrong with a cell file; with `--connect` its devices too."""
 
 import grp
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -22,6 +23,7 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.roles import lacking_roles
+from cellctl.geometry.pose import pose_from_xyzabc
 
 if TYPE_CHECKING:
     from cellctl.cli.connecting.answer import Answer
@@ -147,6 +149,7 @@ def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Ex
     _say_what_is_not_checked(console, cell)
     _say_what_zones_hold(console, cell)
     _say_what_boxes_leave(console, cell, examined.needs)
+    _say_how_sensors_lie(console, cell)
     console.print(f"  {'poses':32} {_POSES}", markup=False)
     model = model_path(cell_file)
     if model.exists():
@@ -210,6 +213,19 @@ def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[Ar
             name = f"robots.{of_arm.name} {room.key.rsplit('.', 1)[-1]}"
             text = f"leaves beyond taught poses and stated moves: {left} mm"
             console.print(f"  {name:32} {text}", markup=False)
+
+
+def _say_how_sensors_lie(console: Console, cell: CellConfig) -> None:
+    """The turn of each force sensor about its axis: before the first weighing nothing in the file
+    contradicts a wrong one."""
+    for name, sensor in cell.force_sensors.items():
+        x, y, _ = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()[:, 0]
+        turned_deg = math.degrees(math.atan2(y, x))
+        text = (
+            f"its x is turned by {turned_deg:.0f} deg about z of the flange: a push by hand shows "
+            "whether it is (the force in `cellctl status`)"
+        )
+        console.print(f"  {f'force_sensors.{name}':32} {text}", markup=False)
 
 
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:

@@ -46,6 +46,16 @@ def test_a_cell_with_recipes_is_not_told_what_it_lacks_for_others() -> None:
     assert "process " not in done.stdout
 
 
+@pytest.mark.parametrize(("written_deg", "said"), [("0.0", "0 deg"), ("90.0", "90 deg")])
+def test_it_says_how_a_force_sensor_is_turned(tmp_path: Path, written_deg: str, said: str) -> None:
+    """In a cell that weighs nothing no other value contradicts it."""
+    old = "flange_T_sensor = [0.0, 0.0, 30.0, 0.0,"
+    new = f"flange_T_sensor = [0.0, 0.0, 30.0, {written_deg},"
+    path = written(tmp_path / "cell", "insertion-pin.toml", old, new)
+    done = CliRunner().invoke(whole_app(), ["check", str(path)])
+    assert f"its x is turned by {said} about z of the flange" in done.stdout
+
+
 def test_what_the_daemon_needs_of_its_pc_is_a_hint(tmp_path: Path) -> None:
     path = written(
         tmp_path,
