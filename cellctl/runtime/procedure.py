@@ -6,6 +6,7 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.runtime.guide import UNGUIDED, Guide
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint
 
@@ -65,6 +66,8 @@ class Procedure:
     """How long a result that passes stays valid."""
     contact: bool = False
     """Touches the part, so that it deals with trips of the guard itself."""
+    guide: Guide = UNGUIDED
+    """What the person has to know who runs it."""
     handles_parts: bool = False
     """Works on the parts of a recipe without touching one against the other."""
 

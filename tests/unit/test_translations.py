@@ -19,6 +19,7 @@ from cellctl.fault_catalogue import known_fault, shipped_faults
 from cellctl.processes.antenna_module.procedures.procedure_list import antenna_procedures
 from cellctl.processes.deck_to_frame.procedures.procedure_list import deck_procedures
 from cellctl.processes.peg_in_hole.procedures.procedure_list import peg_procedures
+from cellctl.runtime.procedure import Procedure
 from cellctl.runtime.steps import StepSpec
 from cellctl.translations import fault_words, label, labels, of_english, spoken, translated
 from tests.unit.test_fault_catalogue import FAULTS, install
@@ -98,7 +99,7 @@ def _labels_of_steps() -> Iterator[str]:
             yield from ([module["LABEL"]] if "LABEL" in module else [])
 
 
-def _labels_of_procedures() -> Iterator[str]:
+def _procedures() -> Iterator[Procedure]:
     recipes = [cast(Any, SimpleNamespace(id=1))]
     settings = SimpleNamespace(validity_days=1, reference=object())
     devices = {"head_1": None, "head_2": None}
@@ -109,18 +110,31 @@ def _labels_of_procedures() -> Iterator[str]:
         antenna_procedures(cell, recipes, nothing),
         peg_procedures(cell, recipes, nothing),
     ):
-        yield from (one.label for one in found)
+        yield from found
 
 
 @pytest.mark.parametrize("language", FOREIGN)
 def test_every_step_and_procedure_has_a_label(language: str) -> None:
-    steps, procedures = set(_labels_of_steps()), set(_labels_of_procedures())
+    steps, procedures = set(_labels_of_steps()), {one.label for one in _procedures()}
     assert {"mate", "grip again", "touch face"} <= steps
     assert {"identify payload", "tool by turning", "take panel reference"} <= procedures
     assert {one for one in steps | procedures if one not in labels(language)} == set()
     for english, foreign in labels(language).items():
         assert CHINESE.search(foreign), english
         assert code(english) == code(foreign)
+
+
+def test_every_procedure_says_what_to_set_up_what_moves_and_what_it_renews() -> None:
+    assert {one.number for one in _procedures() if not one.guide.set_up} == set()
+    assert {one.number for one in _procedures() if not one.guide.moves} == set()
+    assert {one.label for one in _procedures() if not one.guide.renews} == {"check main arm"}
+
+
+@pytest.mark.parametrize("language", FOREIGN)
+def test_every_sentence_of_a_guide_is_translated(language: str) -> None:
+    guides = [one.guide for one in _procedures()]
+    told = {line for one in guides for line in (*one.set_up, *one.moves, *one.then)}
+    assert {line for line in told if label(line, language) == line} == set()
 
 
 @pytest.mark.parametrize("language", FOREIGN)

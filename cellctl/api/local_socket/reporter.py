@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Iterable, Mapping
+from dataclasses import asdict
 from typing import Any
 
 from cellctl.api.local_socket.live_view import LiveView
@@ -26,6 +27,7 @@ from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.outcome import outcome
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import ActiveAlarm
+from cellctl.runtime.guide import Guide
 from cellctl.runtime.unit import UnitController
 
 
@@ -107,7 +109,9 @@ class Reporter:
         return {
             "calibrations": [item.model_dump(mode="json") for item in calibrations],
             "recipes": [{"number": r.id, "name": r.name} for r in self._cell.config.recipes],
-            "procedures": [{"number": one.number, "name": one.label} for one in procedures],
+            "procedures": [
+                {"number": one.number, "name": one.label, **_guide(one.guide)} for one in procedures
+            ],
             "last_run": None if last_run is None else last_run.model_dump(mode="json"),
             "records": records,
         }
@@ -150,6 +154,10 @@ def _job_result(result: str, last_run: RunReport | None) -> str:
     """A dry run has made no part, which the line's register has as a bad one; nothing is wrong."""
     same = last_run is not None and last_run.result == result
     return last_run.ended_as if last_run is not None and same else result
+
+
+def _guide(guide: Guide) -> dict[str, list[str]]:
+    return {part: list(lines) for part, lines in asdict(guide).items()}
 
 
 def _fault(error: CellError) -> FaultReport:

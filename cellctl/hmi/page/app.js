@@ -9,10 +9,11 @@ import * as health from "./health.js";
 import * as history from "./history.js";
 import * as line from "./line.js";
 import { ageS, cell, open, stale, start, watch } from "./live.js";
+import * as maintenance from "./maintenance.js";
 import * as run from "./run.js";
 import { change, load, other, spoken, t } from "./texts.js";
 
-const SCREENS = { run, alarms, history, calibration, line, health };
+const SCREENS = { run, alarms, history, calibration, maintenance, line, health };
 const $ = (id) => document.getElementById(id);
 let since = performance.now();
 

@@ -112,16 +112,20 @@ function latest() {
   return last ? t("last_command", given(`cmd_${last.command}`, last.command), last.who.replace(/^page:/, ""), clock(last.time)) : "";
 }
 
+export const controls = (names) => h("div", { class: "buttons" }, names.map(made));
+
 export function commands() {
-  return h("section", {}, h("h2", {}, t("commands"), h("span", { class: "dim live", id: "last-command" })), h("div", { class: "buttons" }, ORDER.map(made)));
+  return h("section", {}, h("h2", {}, t("commands"), h("span", { class: "dim live", id: "last-command" })), controls(ORDER));
 }
 
-// A button that is forbidden stays in its place, with the reason below it.
-export function refresh(root) {
-  root.querySelector("#last-command").textContent = latest() && ` · ${latest()}`;
+// A button that is forbidden stays in its place, with the reason below it; `besides` has, by command,
+// what a screen itself waits for.
+export function refresh(root, besides = {}) {
+  const last = root.querySelector("#last-command");
+  if (last) last.textContent = latest() && ` · ${latest()}`;
   for (const place of root.querySelectorAll("[data-command]")) {
     const name = place.dataset.command;
-    const reason = whyNot(name);
+    const reason = whyNot(name) || besides[name];
     place.querySelector("button").disabled = Boolean(reason);
     // Written only when it has changed: a screen reader speaks what is written.
     const answer = typeof said[name] === "function" ? said[name]() : said[name];

@@ -42,15 +42,21 @@ def description_in(language: str, description: Message) -> dict[str, Any]:
     """Names of the procedures, and what is the matter with calibrations."""
     told = dict(description)
     if "procedures" in description:
-        told["procedures"] = [
-            one | {"name": label(one["name"], language)} for one in description["procedures"]
-        ]
+        told["procedures"] = [_procedure_in(language, one) for one in description["procedures"]]
     if "calibrations" in description:
         told["calibrations"] = [
             one | {"problem": spoken(one["problem"], language)}
             for one in description["calibrations"]
         ]
     return told
+
+
+def _procedure_in(language: str, one: Message) -> dict[str, Any]:
+    guide = {
+        part: [label(sentence, language) for sentence in one.get(part, ())]
+        for part in ("set_up", "moves", "then")
+    }
+    return {**one, "name": label(one["name"], language), **guide}
 
 
 def run_in(language: str, run: Message) -> dict[str, Any]:

@@ -97,7 +97,17 @@ class PaperDaemon:
                 }
             ],
             "recipes": [{"number": 1, "name": "a part"}],
-            "procedures": [{"number": 101, "name": "calibrate head"}],
+            "procedures": [
+                {
+                    "number": 101,
+                    "name": "calibrate head 1",
+                    "set_up": ["The calibration board lies under the head.", "The light is on."],
+                    "moves": ["Nothing else moves."],
+                    "then": ["Take the board away."],
+                    "renews": ["head"],
+                },
+                {"number": 900, "name": "of a plug-in"},
+            ],
             "registers": [
                 {
                     "address": 2,

@@ -27,6 +27,7 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STOP_LATENCY,
 )
 from cellctl.processes.deck_to_frame.moves.taught_poses import main_to_home
+from cellctl.processes.deck_to_frame.procedures import guides
 from cellctl.processes.deck_to_frame.procedures.board_transfer import (
     WaitingPlacements,
     measure_board,
@@ -37,6 +38,7 @@ from cellctl.processes.deck_to_frame.procedures.contact_stiffness import (
 )
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2
 from cellctl.processes.deck_to_frame.stations import DeckCell
+from cellctl.runtime.guide import Guide
 from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 
@@ -54,19 +56,21 @@ def deck_procedures(
     valid_for = timedelta(days=cell.settings.validity_days)
     on_cell = _OnCell(cell, services, waiting)
 
-    def procedure(number: int, label: str, run: Run) -> Procedure:
-        return Procedure(number, number, label, run, valid_for)
+    def procedure(number: int, label: str, guide: Guide, run: Run) -> Procedure:
+        return Procedure(number, number, label, run, valid_for, guide=guide)
 
+    head_1 = partial(on_cell.head, cell.head_1, STEREO_HEAD_1)
+    head_2 = partial(on_cell.head, cell.head_2, STEREO_HEAD_2)
     return (
-        procedure(101, "calibrate head 1", partial(on_cell.head, cell.head_1, STEREO_HEAD_1)),
-        procedure(102, "calibrate head 2", partial(on_cell.head, cell.head_2, STEREO_HEAD_2)),
-        procedure(103, "calibrate base frame", on_cell.base_frame),
-        procedure(104, "calibrate board 1", partial(on_cell.board, HEAD_1)),
-        procedure(105, "calibrate board 2", partial(on_cell.board, HEAD_2)),
-        procedure(106, "identify payload", on_cell.payload),
-        procedure(107, "measure stop latency", on_cell.stop_latency),
+        procedure(101, "calibrate head 1", guides.HEAD_1, head_1),
+        procedure(102, "calibrate head 2", guides.HEAD_2, head_2),
+        procedure(103, "calibrate base frame", guides.BASE, on_cell.base_frame),
+        procedure(104, "calibrate board 1", guides.BOARD_1, partial(on_cell.board, HEAD_1)),
+        procedure(105, "calibrate board 2", guides.BOARD_2, partial(on_cell.board, HEAD_2)),
+        procedure(106, "identify payload", guides.WEIGHING, on_cell.payload),
+        procedure(107, "measure stop latency", guides.STOPPING, on_cell.stop_latency),
         *_contact_stiffness(cell, services, valid_for),
-        procedure(109, "check main arm", on_cell.main_arm),
+        procedure(109, "check main arm", guides.REFERENCE, on_cell.main_arm),
     )
 
 
@@ -83,6 +87,7 @@ def _contact_stiffness(
             partial(measure_contact_stiffness_on_cell, cell, recipe, services),
             valid_for,
             contact=True,
+            guide=guides.stiffness(recipe.id),
         )
         for number, recipe in recipes.items()
     ]

@@ -5,10 +5,12 @@ from datetime import timedelta
 from functools import partial
 from typing import Any
 
+from cellctl.processes.peg_in_hole.procedures import guides
 from cellctl.processes.peg_in_hole.procedures.contact_loop import measure_loop_on_cell
 from cellctl.processes.peg_in_hole.procedures.panel import take_panel_reference
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.stations import PegCell
+from cellctl.runtime.guide import Guide
 from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
 from cellctl.runtime.process import CellServices
 
@@ -19,9 +21,9 @@ BY_RECIPE = 100
 _OnCell = Callable[
     [PegCell, PegRecipe, CellServices, ProcedureContext], Coroutine[Any, Any, ProcedureOutcome]
 ]
-_PROCEDURES: dict[int, tuple[str, _OnCell]] = {
-    LOOP: ("measure contact loop", measure_loop_on_cell),
-    PANEL: ("take panel reference", take_panel_reference),
+_PROCEDURES: dict[int, tuple[str, _OnCell, Callable[[int], Guide]]] = {
+    LOOP: ("measure contact loop", measure_loop_on_cell, guides.loop),
+    PANEL: ("take panel reference", take_panel_reference, guides.panel),
 }
 
 
@@ -37,8 +39,9 @@ def peg_procedures(
             partial(run, cell, recipe, services),
             timedelta(days=cell.settings.validity_days),
             contact=True,
+            guide=guide(recipe.id),
         )
-        for kind, (label, run) in _PROCEDURES.items()
+        for kind, (label, run, guide) in _PROCEDURES.items()
         for number, recipe in _numbered(kind, recipes)
     ]
 

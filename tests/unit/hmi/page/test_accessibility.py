@@ -46,7 +46,9 @@ def test_every_screen_of_a_cell_at_rest(told: Screen) -> None:
         "alarms": "#alarms h2",
         "history": "#found tbody tr",
         "history/1": "figure img",
-        "calibration": "#procedures button",
+        "calibration": "#calibrations tbody tr",
+        "maintenance": "tbody tr",
+        "maintenance/101": "#cmd-procedure",
         "line": "#from-cell tbody tr",
         "health": "#audit tbody tr",
     }.items():
@@ -102,7 +104,7 @@ def test_dialogs_answers_and_old_values(told: Screen, paper: PaperDaemon) -> Non
     paper.silent = True
     expect(tab.locator("body")).to_have_class("stale")
     found += complaints(told)
-    for name in ("alarms", "line", "health", "calibration"):
+    for name in ("alarms", "line", "health", "calibration", "maintenance/101"):
         tab.goto(f"{told.url}#{name}")
         found += complaints(told)
     tab.click("#who")
@@ -126,12 +128,12 @@ def test_tab_goes_by_the_screens_to_the_commands_that_are_permitted(
     expect(screen.button("reset")).to_be_disabled()
     expect(screen.button("hold")).to_be_enabled()
     seen = []
-    for _ in range(12):
+    for _ in range(13):
         screen.tab.keyboard.press("Tab")
         seen.append(
             screen.tab.evaluate(
                 "document.activeElement.getAttribute('href') || document.activeElement.id"
             )
         )
-    screens = ["#run", "#alarms", "#history", "#calibration", "#line", "#health"]
+    screens = ["#run", "#alarms", "#history", "#calibration", "#maintenance", "#line", "#health"]
     assert seen == [*screens, "who", "language", "cmd-hold", "cmd-unhold", "cmd-stop", "cmd-abort"]

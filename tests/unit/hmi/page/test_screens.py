@@ -201,7 +201,8 @@ def test_all_screens_show_what_there_is(screen: Screen) -> None:
     tab = screen.tab
     for name, words in {
         "history": "SAT-2",
-        "calibration": "calibrate head",
+        "calibration": "101",
+        "maintenance": "calibrate head",
         "line": "PackML StateCurrent",
         "health": "shift begins",
         "alarms": "No alarms",
