@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-page page-pictures bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
@@ -103,6 +103,14 @@ bench-hand-eye: venv
 
 bench-guard: venv
 	$(BIN)/python -m benchmarks.guard.latency
+
+# Wants Chromium. Renews the pictures of docs/operator-page.md: a fake cell makes a part, a procedure and a fault.
+page-pictures: venv
+	$(BIN)/python -m benchmarks.page.pictures
+
+# What 50 readers of the page cost the cell; on a computer that has nothing else to do.
+bench-page: venv
+	$(BIN)/python -m benchmarks.page.clients
 
 bench-console: venv
 	$(BIN)/python -m benchmarks.console

@@ -46,13 +46,13 @@ class SoakedCell:
     _pids: dict[str, int] = field(default_factory=dict)
 
     @classmethod
-    def start(cls, folder: Path) -> Self:
+    def start(cls, folder: Path, *, page_settings: Path | None = None) -> Self:
         """Everything of a cell's PC, and the fake cell beside it."""
         own = OwnCell.make(folder)
         own.fake().ready()
         daemon = own.daemon()
         daemon.ready()
-        page = own.page()
+        page = own.page(page_settings)
         page.ready()
         return cls(own, daemon, page)
 
@@ -71,14 +71,15 @@ class SoakedCell:
         """Cycles until the time is over; raises ``Died``."""
         begun_s = time.monotonic()
         while time.monotonic() - begun_s < 60.0 * minutes:
-            good, said = self._part(len(self.cycles) + 1)
+            good, said = self.part(len(self.cycles) + 1)
             self._look()
             self.cycles.append(Cycle(time.monotonic() - begun_s, good, said))
             told(self.cycles[-1])
         times_s = [cycle.time_s for cycle in self.cycles]
         return [Looked(name, times_s, found) for name, found in self._kept.items()]
 
-    def _part(self, number: int) -> tuple[bool, str]:
+    def part(self, number: int) -> tuple[bool, str]:
+        """Make the part with this number: whether it is good, and else what the line said."""
         with OutsidePlc(self.own.modbus_port) as line:
             line.start_heartbeat()
             line.seq = line.value("ack_seq")

@@ -110,6 +110,16 @@ class PostgresServer:
                 connection.execute(text(statement))
         engine.dispose()
 
+    @property
+    def log(self) -> str:
+        """What it has said."""
+        return self._log.read_text(encoding="utf-8")
+
+    @property
+    def alive(self) -> bool:
+        """Whether its process is there; one that has lost its disk ends by itself."""
+        return self._process is not None and self._process.poll() is None
+
     def _answers(self) -> bool:
         ready = [str(self._bin / "pg_isready"), "-q", "-h", "127.0.0.1", "-p", str(self.port)]
         return subprocess.run(ready, check=False).returncode == 0

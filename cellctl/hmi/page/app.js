@@ -16,6 +16,8 @@ import { change, load, other, spoken, t } from "./texts.js";
 const SCREENS = { run, alarms, history, calibration, maintenance, line, health };
 const $ = (id) => document.getElementById(id);
 let since = performance.now();
+let built = "";
+let shownHead = "";
 
 function place() {
   const [name, detail] = location.hash.slice(1).split("/");
@@ -24,10 +26,15 @@ function place() {
 
 function head() {
   const [name] = place();
+  // Only when something has changed: whoever goes by key would lose their place.
+  const key = JSON.stringify([name, visitor, document.documentElement.lang]);
+  if (key === shownHead) return;
+  shownHead = key;
   $("nav").replaceChildren(...Object.keys(SCREENS).map((one) => h("a", { href: `#${one}`, "aria-current": one === name ? "page" : null }, t(`nav_${one}`))));
   $("language").textContent = other();
   $("simulated").textContent = t("simulated");
-  $("who").textContent = visitor.person ? `${visitor.person} · ${t(visitor.idle ? "idle" : `role_${visitor.role}`)} · ${visitor.panel || t("elsewhere")}` : t("sign_in");
+  const where = visitor.panel || t("elsewhere");
+  $("who").replaceChildren(...(visitor.person ? [visitor.person, h("small", {}, `${t(visitor.idle ? "idle" : `role_${visitor.role}`)} · ${where}`)] : [t("sign_in")]));
 }
 
 function band() {
@@ -57,11 +64,13 @@ function refresh() {
   }
   $("age").textContent = stale() ? `○ ${t("old")}` : `● ${t("live")} ${shown(ageS(), 1)} s`;
   band();
-  SCREENS[place()[0]].update($("main"));
+  // Not the one of the address: that changes a moment before its screen is built.
+  if (built) SCREENS[built].update($("main"));
 }
 
 function show() {
   const [name, detail] = place();
+  built = name;
   head();
   SCREENS[name].build($("main"), detail);
   refresh();

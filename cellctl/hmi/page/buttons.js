@@ -90,7 +90,7 @@ function startDialog() {
     give("start", { request: "start", serial: serial.value, mate_serial: mate.value, recipe: recipe.value, dry_run: dry.checked });
   });
   dialog.append(h("h2", {}, t("cmd_start")), h("form", { onsubmit: (event) => event.preventDefault() },
-    h("label", {}, t("serial"), serial), h("label", {}, t("mate_serial"), mate), h("label", {}, t("recipe"), recipe), h("label", {}, t("dry_run"), dry)),
+    h("label", {}, t("serial"), serial), h("label", {}, t("mate_serial"), mate), h("label", {}, t("recipe"), recipe), h("label", { class: "tick" }, dry, h("span", {}, t("dry_run")))),
   h("p", {}, t("does_start")), h("div", { class: "row" }, go,
     h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))));
   dialog.addEventListener("close", () => dialog.remove());
@@ -115,7 +115,7 @@ function latest() {
 export const controls = (names) => h("div", { class: "buttons" }, names.map(made));
 
 export function commands() {
-  return h("section", {}, h("h2", {}, t("commands"), h("span", { class: "dim live", id: "last-command" })), controls(ORDER));
+  return h("section", { class: "commands" }, h("h2", {}, t("commands"), h("span", { class: "dim live", id: "last-command" })), controls(ORDER));
 }
 
 // A button that is forbidden stays in its place, with the reason below it; `besides` has, by command,

@@ -58,9 +58,15 @@ function used(head) {
   return rows.length ? [h("h2", {}, t("calibrations")), table([t("kind"), t("identity"), ""], rows)] : [];
 }
 
+function within(lower, upper) {
+  const given = (value) => typeof value === "number";
+  if (given(lower) && given(upper)) return `${lower} … ${upper}`;
+  return given(upper) ? `≤ ${upper}` : given(lower) ? `≥ ${lower}` : "—";
+}
+
 function figures(run) {
   return table([t("figure"), num(t("value")), t("limits"), t("verdict")], run.figures.map((one) => [one.label, num(`${shown(one.value)} ${one.unit}`),
-    `${one.lower ?? ""} … ${one.upper ?? ""}`, one.verdict ? verdict(one.verdict) : "—"]));
+    within(one.lower, one.upper), one.verdict ? verdict(one.verdict) : "—"]));
 }
 
 function passes(run) {

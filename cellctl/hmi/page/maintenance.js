@@ -67,7 +67,7 @@ function modes() {
 }
 
 function guide(root, one) {
-  root.replaceChildren(h("section", {}, h("p", {}, h("a", { href: "#maintenance" }, t("all_procedures"))), h("h2", {}, `${one.number} ${label(one.name)}`),
+  root.replaceChildren(h("section", {}, h("div", { class: "row" }, h("p", {}, h("a", { href: "#maintenance" }, t("all_procedures"))), h("h2", {}, `${one.number} ${label(one.name)}`)),
     h("p", { class: "dim live", id: "who-runs" })),
   h("section", { class: "half" }, h("ol", { class: "guide" },
     step("set_up", ...setUp(one)),

@@ -2,16 +2,22 @@
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
 import cv2
 import pytest
 
+from cellctl.records.run_mcap.export import export_mcap
+from cellctl.records.run_mcap.images import ImageForm
+from cellctl.records.run_mcap.layout import layout_for
 from cellctl.records.store import RunStore
 from cellctl.vision.picture import INSET_PX
 from tests.rigs.whole_cell.own_cell import OwnCell, cellctl
 from tests.rigs.wire.job_rig import JOBS
+from tests.unit.records.run_mcap.layout_fit import misfits
+from tests.unit.records.run_mcap.reading import read
 
 pytestmark = pytest.mark.timeout(300)
 
@@ -29,6 +35,7 @@ def test_a_good_part_with_its_record(own: OwnCell) -> None:
     _record_is_complete(out, result)
     assert _drivers_of_the_heads(out) == {"gige"}, "images through a GenTL producer"
     _commands_find_the_run(out / "store")
+    _recording_fits_its_layout(out)
 
 
 @pytest.mark.long  # a whole job, of which the way of the images alone differs
@@ -39,6 +46,19 @@ def test_a_good_part_with_images_of_frame_servers(own: OwnCell) -> None:
     demo.nobody_left()
     _within_the_limits_of_the_mission(json.loads((out / "result.json").read_text("utf-8")))
     assert _drivers_of_the_heads(out) == {"frame-server"}
+
+
+def _recording_fits_its_layout(out: Path) -> None:
+    opened = RunStore(out / "store", create=False)
+    try:
+        content = read(export_mcap(opened, 1, out / "run.mcap", ImageForm.JPEG).path)
+    finally:
+        opened.close()
+    layout = json.loads(layout_for(content.schemas))
+    assert misfits(layout, content) == []
+    kinds = Counter(name.partition("!")[0] for name in layout["configById"])
+    assert kinds["Image"] == 4
+    assert kinds["Plot"] >= 3
 
 
 def _drivers_of_the_heads(out: Path) -> set[str]:

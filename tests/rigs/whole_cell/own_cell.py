@@ -39,6 +39,8 @@ class OwnCell:
     ports: dict[int, int] = field(default_factory=dict)
     """Shipped port to own port."""
     programs: list["Program"] = field(default_factory=list)
+    pin: str = ""
+    """Of both people at the page, once it was started."""
 
     @classmethod
     def make(cls, folder: Path, shipped: str = "deck") -> Self:
@@ -129,9 +131,10 @@ class OwnCell:
         files = ["--scenario", str(self.scenario), "--cell", str(self.cell), "--out", str(out)]
         return self._start("cellctl", "demo", *files, *options)
 
-    def page(self) -> "Program":
+    def page(self, settings: Path | None = None) -> "Program":
         """The operator page of the daemon, on any free port."""
-        settings, _ = write_settings(self.folder)
+        if settings is None:
+            settings, self.pin = write_settings(self.folder)
         return self._start("cellctl.hmi", "serve", "--settings", str(settings))
 
     def plc(self, *options: str) -> "Program":

@@ -30,12 +30,18 @@ def server() -> Iterator[PostgresServer]:
     # Not below a folder of pytest, into which the server's user may not look.
     with tempfile.TemporaryDirectory(prefix="cellctl-fleet-") as name:
         Path(name).chmod(0o755)
-        server = PostgresServer(Path(name))
-        server.start()
-        roles = ("forward_north", "forward_south", "quality")
-        server.execute(*(f"CREATE ROLE {name} LOGIN PASSWORD '{PASSWORD}'" for name in roles))
+        server = started(Path(name))
         yield server
         server.stop()
+
+
+def started(folder: Path) -> PostgresServer:
+    """A server with the roles of a fleet."""
+    server = PostgresServer(folder)
+    server.start()
+    roles = ("forward_north", "forward_south", "quality")
+    server.execute(*(f"CREATE ROLE {name} LOGIN PASSWORD '{PASSWORD}'" for name in roles))
+    return server
 
 
 class Fleet:

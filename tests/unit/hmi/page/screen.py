@@ -30,8 +30,9 @@ class Screen:
 
     def __exit__(self, *_: object) -> None:
         self.context.close()
-        assert self.complaints == []
-        assert [one for one in self.requests if not one.startswith(self.url)] == []
+        assert not self.complaints, self.complaints
+        elsewhere = [one for one in self.requests if not one.startswith(self.url)]
+        assert not elsewhere, elsewhere
 
     def sign_in(self, name: str = "anna") -> None:
         self.tab.click("#who")

@@ -137,3 +137,11 @@ def test_tab_goes_by_the_screens_to_the_commands_that_are_permitted(
         )
     screens = ["#run", "#alarms", "#history", "#calibration", "#maintenance", "#line", "#health"]
     assert seen == [*screens, "who", "language", "cmd-hold", "cmd-unhold", "cmd-stop", "cmd-abort"]
+
+
+def test_whoever_goes_by_key_keeps_their_place_while_the_page_renews_itself(
+    screen: Screen,
+) -> None:
+    screen.tab.focus("nav a[href='#health']")
+    screen.tab.evaluate("dispatchEvent(new HashChangeEvent('hashchange'))")
+    assert screen.tab.evaluate("document.activeElement.getAttribute('href')") == "#health"

@@ -229,3 +229,30 @@ def test_from_a_run_to_all_others_that_used_the_same_calibration(screen: Screen)
     expect(tab.locator("#find-calibration")).to_have_value("id-SAT-1")
     expect(tab.locator("#found tbody tr")).to_have_count(1)
     expect(tab.locator("#found")).to_contain_text("SAT-1")
+
+
+SIZES = ((1280, 800), (1080, 1920), (1024, 600))
+
+
+def test_nothing_is_cut_off_on_any_panel_and_the_commands_stay_in_reach(screen: Screen) -> None:
+    screen.sign_in("boris")
+    tab, cut = screen.tab, []
+    for language in ("en", "zh"):
+        for width, height in SIZES:
+            tab.set_viewport_size({"width": width, "height": height})
+            for name in ("run", "history", "maintenance/101"):
+                tab.goto(f"{screen.url}#{name}")
+                expect(tab.locator("main section").first).to_be_visible()
+                wide = tab.evaluate("document.documentElement.scrollWidth")
+                beyond = tab.evaluate(
+                    "[...document.querySelectorAll('.third .scroll, header, .buttons button')]"
+                    ".filter((one) => one.scrollWidth > one.clientWidth + 1).length"
+                )
+                head = screen.tab.locator("header").bounding_box()["height"]
+                if wide > width or beyond or head > (80 if width >= 1280 else 160):
+                    cut.append((language, width, name, wide, beyond, head))
+                if name == "run":
+                    abort = screen.button("abort").bounding_box()
+                    assert abort["y"] + abort["height"] < height
+        tab.click("#language")
+    assert cut == []

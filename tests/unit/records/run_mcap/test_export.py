@@ -4,14 +4,11 @@ import json
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from mcap.reader import make_reader
-from mcap_protobuf.decoder import DecoderFactory
 
 from cellctl.errors.records import RecordNotWritten, RunUnknown
 from cellctl.records import RunStore
@@ -22,6 +19,7 @@ from cellctl.records.run_mcap.export import ExportedRun, export_mcap
 from cellctl.records.run_mcap.images import ImageForm
 from cellctl.records.run_mcap.layout import layout_for
 from tests.unit.records.conftest import start
+from tests.unit.records.run_mcap.layout_fit import misfits
 from tests.unit.records.run_mcap.moved_run import (
     BASE_T_C1,
     FILE,
@@ -35,66 +33,9 @@ from tests.unit.records.run_mcap.moved_run import (
     motion,
     open_run,
 )
+from tests.unit.records.run_mcap.reading import Content, read
 
 PAGE = Path(__file__).parents[4] / "docs" / "recordings.md"
-_TYPES = {
-    "string": str, "number": (int, float), "integer": int, "boolean": bool, "array": list,
-    "object": dict, "null": type(None),
-}  # fmt: skip
-
-
-@dataclass
-class Content:
-    """Everything that a file holds."""
-
-    messages: list[tuple[str, int, Any]] = field(default_factory=list)
-    schemas: dict[str, str] = field(default_factory=dict)
-    metadata: dict[str, dict[str, str]] = field(default_factory=dict)
-    attachments: dict[str, bytes] = field(default_factory=dict)
-
-    def of(self, topic: str) -> list[Any]:
-        """Messages of a topic."""
-        return [message for name, _, message in self.messages if name == topic]
-
-
-def read(path: Path) -> Content:
-    """Decoded by the official reader, checksums and JSON schemas checked."""
-    content = Content()
-    with path.open("rb") as stream:
-        reader = make_reader(stream, validate_crcs=True, decoder_factories=[DecoderFactory()])
-        for schema, channel, message in reader.iter_messages(log_time_order=False):
-            assert schema is not None
-            content.schemas[channel.topic] = schema.name
-            if channel.message_encoding == "json":
-                values = json.loads(message.data)
-                require_valid(values, json.loads(schema.data), channel.topic)
-            else:
-                decode = DecoderFactory().decoder_for(channel.message_encoding, schema)
-                assert decode is not None
-                values = decode(message.data)
-            content.messages.append((channel.topic, message.log_time, values))
-        content.metadata = {one.name: dict(one.metadata) for one in reader.iter_metadata()}
-        content.attachments = {one.name: one.data for one in reader.iter_attachments()}
-        summary = reader.get_summary()
-        assert summary is not None
-        assert summary.statistics is not None
-        assert summary.statistics.message_count == len(content.messages)
-    return content
-
-
-def require_valid(values: dict[str, Any], schema: dict[str, Any], topic: str) -> None:
-    """What the schemas say is types; registers have the names of the register map."""
-    for name, value in values.items():
-        if name not in schema["properties"]:
-            assert topic.startswith("/registers/"), (topic, name)
-            continue
-        kinds = schema["properties"][name]["type"]
-        kinds = [kinds] if isinstance(kinds, str) else kinds
-        assert isinstance(value, tuple(_flat(_TYPES[kind] for kind in kinds))), (topic, name, value)
-
-
-def _flat(kinds: Any) -> list[type]:
-    return [one for kind in kinds for one in (kind if isinstance(kind, tuple) else (kind,))]
 
 
 @dataclass(frozen=True)
@@ -307,23 +248,40 @@ def test_the_page_lists_every_topic_with_its_schema(exported: Exported) -> None:
     assert used == set(table)
 
 
-def test_the_layout_shows_topics_that_the_run_has(exported: Exported) -> None:
+@pytest.mark.parametrize("form", list(ImageForm))
+def test_the_layout_fits_what_the_run_has(
+    exported: Exported, tmp_path: Path, form: ImageForm
+) -> None:
     content = exported.content
-    text = layout_for(content.schemas)
-    layout = json.loads(text)
-    named = set(re.findall(r'"(/[^"]+?)(?:\.[\w.]+)?"', text))
-    assert named <= set(content.schemas)
-    assert {"/contact/force", f"/images/{VIEW}", f"/images/{VIEW}/annotations"} <= named
-    shown = set(re.findall(r'"(?:first|second)": "([^"]+)"', text))
-    assert shown == set(layout["configById"])
-    fields = {path for one in layout["configById"].values() for path in one.get("paths", ())
-              for path in (path["value"],)}  # fmt: skip
-    for path in fields:
-        topic, *keys = path.split(".")
-        value = content.of(topic)[0]
-        for key in keys:
-            value = value[key]
-        assert value is not None
+    if form is not ImageForm.LOSSLESS:
+        number = exported.record.head.number
+        content = read(export_mcap(exported.store, number, tmp_path / "run.mcap", form).path)
+    layout = json.loads(layout_for(content.schemas))
+    assert misfits(layout, content) == []
+    named = set(layout["configById"])
+    pictured = set() if form is ImageForm.NONE else {f"Image!{VIEW}"}
+    assert named >= pictured | {"Plot!contact-force", "Plot!force-force-raw", "Plot!passes"}
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "problem"),
+    [
+        ("/contact/force.fx_n", "/contact/force.fx", "has no number"),
+        ("/passes.components.X.value", "/passes.components.X.unit", "has no number"),
+        ("/unit/state.mode", "/unit/state.modus", "has no state"),
+        ('"imageTopic": "/images/', '"imageTopic": "/image/', "is no image"),
+        ("/annotations", "/rims", "has no annotations"),
+        ('"followTf": "base"', '"followTf": "world"', "no frame world"),
+        ('"/log"', '"/steps"', "is no log"),
+        ("RosOut!log", "Log!log", "is no panel"),
+    ],
+)
+def test_a_layout_that_does_not_fit_is_noticed(
+    exported: Exported, old: str, new: str, problem: str
+) -> None:
+    text = layout_for(exported.content.schemas)
+    assert old in text
+    assert problem in " ".join(misfits(json.loads(text.replace(old, new)), exported.content))
 
 
 def test_a_layout_of_a_run_without_images_has_no_image_panels() -> None:
