@@ -190,7 +190,7 @@ def _cell(
         },
         {
             "axial_n_m": axial * (draws.between(1.5, 3.0) if truth is Truth.STIFF else 1.0),
-            "lateral_n_m": axial * draws.between(0.3, 1.0),
+            "lateral_n_m": axial * draws.between(0.5, 1.0),
             "turning_nm_rad": turning,
             "yaw_nm_rad": turning,
         },

@@ -10,6 +10,7 @@ import numpy as np
 from cellctl.cell.contact_motion.motions import Condition, ContactMotions, ContactSample, Ended
 from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
 _HOLD_N = 5.0
 _FASTEST_RAD_S = radians(3.0)
@@ -44,7 +45,8 @@ async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeomet
             _sweep_speed_rad_s(task, keys),
             _dropped_from(float(motion.last.task_position_tip_m[2]), task),
         )
-        await motions.comply(_HOLD_N, _SETTLE_S)
+        # Keys that have dropped leave nothing that carries the plug: it would sink on and on.
+        await motions.comply(_HOLD_N, _SETTLE_S, LostSupport(_HOLD_N))
         motion = await motions.feed(through_m, task.limits.search_n)
     if motion.ended is Ended.FORCE and _on_keys(motion.last, task, keys):
         raise KeywayNotFound(

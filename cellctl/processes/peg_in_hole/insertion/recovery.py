@@ -13,6 +13,7 @@ from cellctl.cell.contact_motion.motions import ContactMotions
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.insertion.felt import Standing
 from cellctl.processes.peg_in_hole.plan.task import FitGeometry
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
 _LOWERED, _HALVED = 0.3, 0.5
 _GIVE_WAY_S = 1.0
@@ -47,8 +48,10 @@ class GiveWay(Recovery):
         fit: FitGeometry,  # noqa: ARG002 - alike for every fit
         standing: Standing,
     ) -> None:
-        """One second at 30 % of the force at which it stands."""
-        await motions.comply(_LOWERED * standing.axial_n, _GIVE_WAY_S)
+        """One second at 30 % of the force at which it stands, or until it is free."""
+        press_n = _LOWERED * standing.axial_n
+        # A peg that comes free sinks, and nothing carries it: that is what is hoped for.
+        await motions.comply(press_n, _GIVE_WAY_S, LostSupport(press_n))
 
 
 class Wiggle(Recovery):
@@ -92,9 +95,9 @@ class BackAndAgain(Recovery):
         fit: FitGeometry,  # noqa: ARG002 - alike for every fit
         standing: Standing,
     ) -> None:
-        """Back 1 mm."""
+        """Back 1 mm, where nothing is below the peg to press against."""
         await motions.back_out(_BACK_M - standing.depth_m)
-        await motions.comply(_LOWERED * standing.axial_n, _GIVE_WAY_S)
+        await motions.comply(0.0, _GIVE_WAY_S)
 
 
 IN_ORDER: tuple[Recovery, ...] = (GiveWay(), Wiggle(), Yaw(), BackAndAgain())

@@ -13,6 +13,7 @@ from cellctl.cell.contact_motion.motions import (
 )
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST, yielded_m
@@ -44,7 +45,8 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
     """Push along x and back, along y and back, pressed lightly; the arm stays where it ends."""
     push_n = push_force_n(task.cell)
     yields_m = push_n / task.cell.stiffness_n_m
-    begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
+    # Where nothing carries the peg it is not at its seat, which its depth tells.
+    begun = (await motions.press(_PRESS_N, _SETTLE_S, LostSupport(_PRESS_N))).last
     speed_m_s = _push_speed_m_s(task, push_n)
     pushes: dict[Side, ContactMotion | None] = {}
     for axis, sign in SIDES:

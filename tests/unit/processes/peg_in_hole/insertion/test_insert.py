@@ -25,6 +25,7 @@ class Bore(KinematicMotions):
         super().__init__(task, truth, np.random.default_rng(0))
         self.stands_mm, self.side_n, self.wedged = stands_mm, side_n, wedged
         self.greatest_asked_n = 0.0
+        self.must_stay = False
 
     async def feed(
         self, depth_m: float, force_limit_n: float, until: Condition | None = None
@@ -40,6 +41,18 @@ class Bore(KinematicMotions):
     ) -> ContactMotion:
         self.time_s += hold_s
         return ContactMotion(Ended.TIME, (self.felt(force_n),))
+
+    async def comply(
+        self,
+        press_n: float,
+        hold_s: float,
+        until: Condition | None = None,
+        *,
+        turns: bool = True,
+    ) -> ContactMotion:
+        # As the streamed contact: it may not be lost where nothing waits for that.
+        self.must_stay |= press_n > 0 and until is None
+        return await super().comply(press_n, hold_s, until, turns=turns)
 
     def felt(self, press_n: float) -> ContactSample:
         side = self.side_n * (1.0 if self.wedged else press_n / LIMIT_N)
@@ -73,6 +86,13 @@ def test_a_jam_is_freed_by_giving_way_first() -> None:
     found = fed(Bore([4.0], side_n=10))
     assert found.recoveries == ("give way",)
     assert found.greatest_force_n == pytest.approx(LIMIT_N, abs=0.1)
+
+
+@pytest.mark.parametrize("side_n", [10.0, 0.0])
+def test_a_peg_that_comes_free_may_lose_its_contact(side_n: float) -> None:
+    bore = Bore([4.0], side_n=side_n)
+    assert fed(bore).recoveries
+    assert not bore.must_stay
 
 
 def test_recoveries_come_in_order_and_end_after_three() -> None:
