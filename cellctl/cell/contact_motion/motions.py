@@ -61,6 +61,11 @@ class ContactMotion:
 Condition = Callable[[ContactSample], bool]
 
 
+def never(_sample: ContactSample) -> bool:
+    """A condition that ends nothing: a press that waits for it may lose what it presses on."""
+    return False
+
+
 class ContactMotions(ABC):
     """Streamed motions of the tip. Used by one task at a time, within one stream.
 

@@ -12,7 +12,7 @@ from math import atan, radians, tan
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended, never
 from cellctl.processes.peg_in_hole.plan.task import CellFigures, SearchTask
 
 Array = NDArray[np.float64]
@@ -85,7 +85,8 @@ async def classify_contact(
 
     Each touch, with ``speed_m_s``, begins where the first did.
     """
-    begun = (await motions.press(press_n, _SETTLE_S)).last
+    # Between its walls a peg has nothing below it, and sinks.
+    begun = (await motions.press(press_n, _SETTLE_S, never)).last
     depth_m = float(begun.task_position_tip_m[2])
     felt = class_by_force(begun.force_n, task.cell)
     if felt is ContactClass.END_FACE and depth_m <= task.fit.entry_depth_m:
@@ -113,4 +114,4 @@ async def _return(
     # meets it no faster than in a touch.
     back = begun.task_position_tip_m[None, :2]
     speed_m_s = min(_TRAVEL_M / _SETTLE_S, speed_m_s)
-    await motions.slide(back, press_n, speed_m_s, lambda _sample: False, side_force_n)
+    await motions.slide(back, press_n, speed_m_s, never, side_force_n)

@@ -10,6 +10,7 @@ from cellctl.cell.contact_motion.motions import (
     ContactMotions,
     ContactSample,
     Ended,
+    never,
 )
 from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import (
@@ -113,7 +114,7 @@ async def _help(
     motions: ContactMotions, task: SearchTask, standing: Standing, measure: Recovery
 ) -> None:
     """Raises ``PegWedged``: pulling harder would only break what is wedged."""
-    lowered = await motions.press(0.3 * standing.axial_n, 0.2)
+    lowered = await motions.press(0.3 * standing.axial_n, 0.2, never)
     if Standing.of(lowered.last).wedged_after(standing):
         raise PegWedged(str(standing))
     await measure.apply(motions, task.fit, standing)

@@ -4,7 +4,7 @@ from math import radians
 
 import numpy as np
 
-from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, Ended, never
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _PRESS_N = 2.0
@@ -19,7 +19,7 @@ _SETTLE_S = 0.5
 
 async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeometry) -> int:
     """Of two; the part is left at the angle at which it was."""
-    begun = (await motions.press(_PRESS_N, _SETTLE_S)).last
+    begun = (await motions.press(_PRESS_N, _SETTLE_S, never)).last
     upright = np.array([0.0, 0.0, float(begun.task_rotation_tip_rad[2])])
     # Only the change counts: the moment that is there before the turn is none of the keys.
     free_nm = float(begun.moment_nm[2])
@@ -45,5 +45,6 @@ async def pull_that_holds_n(motions: ContactMotions, task: SearchTask, pull_n: f
     way_m = pull_n / task.cell.stiffness_n_m + _MARGIN_M
     pulled = await motions.touch(np.array([0.0, 0.0, -1.0]), way_m, pull_n)
     held_n = float(pulled.last.force_n[2])
-    await motions.press(_PRESS_N, _SETTLE_S)
+    # A part that has come along lies where it is pressed back to.
+    await motions.press(_PRESS_N, _SETTLE_S, never)
     return held_n

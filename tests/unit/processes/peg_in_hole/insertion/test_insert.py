@@ -39,6 +39,7 @@ class Bore(KinematicMotions):
     async def press(
         self, force_n: float, hold_s: float, until: Condition | None = None
     ) -> ContactMotion:
+        self.must_stay |= until is None
         self.time_s += hold_s
         return ContactMotion(Ended.TIME, (self.felt(force_n),))
 
