@@ -63,7 +63,16 @@ class Cell:
             if robot.controller != "rpc"
         }
         self.stopping = asyncio.Event()
-        self._control = ControlServer(Operator(self, self.commands()).handlers())
+        self.operator = Operator(
+            self.world,
+            self.clock,
+            self.watch,
+            robots=self.robots,
+            faults=self._faults(),
+            commands=self.commands(),
+            shut_down=self.stopping.set,
+        )
+        self._control = ControlServer(self.operator.handlers())
 
     def commands(self) -> Mapping[str, Command]:
         """What the hands of an operator can do in this cell, by name."""
@@ -79,8 +88,7 @@ class Cell:
             raise ValueError(f"{robot!r} shows no alarm of a job")
         controller.acknowledge()
 
-    def faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
-        """What can be injected faults into, by name; the bodies are called ``world``."""
+    def _faults(self) -> Mapping[str, FaultBoard | DeviceFaults]:
         return {
             **{name: robot.faults for name, robot in self.robots.items()},
             **{name: device.faults for name, device in self._rack.devices.items()},

@@ -5,12 +5,12 @@ Not in a simulated way: the real systemd of this machine, with the whole sandbox
 
 import json
 import shutil
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import pytest
 
 from tests.rigs.booted_pc.pc import ROOT, BootedPc, why_not
+from tests.rigs.waiting import until_blocking
 
 pytestmark = [pytest.mark.long, pytest.mark.timeout(700)]
 PROGRAM = "/opt/cellctl/current/.venv/bin/cellctl"
@@ -37,15 +37,12 @@ def pc(tmp_path_factory: pytest.TempPathFactory) -> Iterator[BootedPc]:
         booted.run("chown", "-R", "cellctl:cellctl", kept)
         fake = ("-m", "fakes", "run", "--scenario", "/etc/cellctl/deck.scenario.toml")
         booted.start("env", SOURCE, PYTHON, *fake, log=furnished.box / "fake.log")
-        until(lambda: '"ready"' in (furnished.box / "fake.log").read_text(errors="replace"))
+        until_blocking(
+            lambda: '"ready"' in (furnished.box / "fake.log").read_text(errors="replace"),
+            within_s=90.0,
+            look_s=0.2,
+        )
         yield booted
-
-
-def until(condition: Callable[[], bool], within_s: float = 90.0) -> None:
-    end_s = time.monotonic() + within_s
-    while not condition():
-        assert time.monotonic() < end_s
-        time.sleep(0.2)
 
 
 def shown(pc: BootedPc, name: str) -> str:
@@ -87,7 +84,7 @@ def test_the_page_follows_it_from_a_unit_of_its_own(pc: BootedPc) -> None:
         answer = pc.run(PYTHON, "-c", asked)
         return answer.returncode == 0 and json.loads(answer.stdout)["daemon_linked"]
 
-    until(linked)
+    until_blocking(linked, within_s=90.0, look_s=0.2)
     exposed = pc.run("systemctl", "show", "cellctl-hmi", "--property", "User", "--value").stdout
     assert exposed.strip() == "cellctl-hmi"
 
@@ -95,7 +92,11 @@ def test_the_page_follows_it_from_a_unit_of_its_own(pc: BootedPc) -> None:
 def test_a_daemon_that_hangs_is_killed_and_comes_back_without_moving(pc: BootedPc) -> None:
     before = shown(pc, "MainPID")
     pc.run("kill", "-STOP", before)
-    until(lambda: shown(pc, "NRestarts") == "1" and shown(pc, "ActiveState") == "active")
+    until_blocking(
+        lambda: shown(pc, "NRestarts") == "1" and shown(pc, "ActiveState") == "active",
+        within_s=90.0,
+        look_s=0.2,
+    )
     assert shown(pc, "MainPID") != before
     assert "watchdog" in journal(pc).lower()
     status = pc.run(PROGRAM, "status", "--json", "--socket", "/run/cellctl/cellctl.sock")

@@ -1,10 +1,11 @@
 """What the operator of the antenna cell does: boards, hands at the panel, the next module."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 from scipy.spatial.transform import RigidTransform
 
+from fakes.scenes.antenna_bench.bench import BenchWorld
 from fakes.scenes.antenna_bench.boards import BOARD_PLACES, BoardPlace, board_pose
 from fakes.scenes.antenna_bench.hands import HandsAtPanel, seated_by_hand
 from fakes.scenes.antenna_bench.mating import KEPT_M
@@ -12,9 +13,6 @@ from fakes.scenes.antenna_bench.standing_by import StandingBy
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG
 from fakes.world.frames import MM, distance, stream
 from fakes.world.world import Command
-
-if TYPE_CHECKING:
-    from fakes.scenes.antenna_bench.scene import AntennaBench
 
 _ABOVE_SOCKET_M: Final = 5e-3
 """Height above the seat at which a hand stops and begins to plug."""
@@ -25,7 +23,7 @@ _GLANCE_MS: Final = 100
 class BenchOperator:
     """The operator beside the bench, as the control port asks for it."""
 
-    def __init__(self, world: "AntennaBench") -> None:
+    def __init__(self, world: BenchWorld) -> None:
         self._world = world
         self._arm = world.arms[world.scenario.gripper.carried_by]
         self._hands = HandsAtPanel(self._arm)

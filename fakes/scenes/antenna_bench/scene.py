@@ -1,7 +1,6 @@
 """An antenna module is taken from its tray, looked at from below, and plugged."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -9,27 +8,20 @@ from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario_file.scenario import Scenario
 from fakes.scenario_file.sections import Optics
-from fakes.scenes.antenna_bench.boards import (
-    plate_dots,
-    plate_pose,
-    plate_size_m,
-)
-from fakes.scenes.antenna_bench.gripping import ModulePlace, Place
-from fakes.scenes.antenna_bench.mating import EVERY_MS, KEPT_M, PlugAtSocket, mount_of
+from fakes.scenes.antenna_bench.bench import BenchWorld
+from fakes.scenes.antenna_bench.boards import plate_dots, plate_size_m
+from fakes.scenes.antenna_bench.mating import EVERY_MS, KEPT_M
 from fakes.scenes.antenna_bench.operator import BenchOperator
-from fakes.scenes.antenna_bench.parts import FAULTS, draw_parts, module_top, placed, tray_face
+from fakes.scenes.antenna_bench.parts import FAULTS, module_top, placed, tray_face
 from fakes.scenes.antenna_bench.scenario import BenchScenario
-from fakes.scenes.antenna_bench.shifts import shifted
 from fakes.scenes.antenna_bench.truth import truth_of
 from fakes.world.boards import chessboard_as_made
 from fakes.world.connector.made import gripper_marks
-from fakes.world.flaws.warmth import warmed
-from fakes.world.frames import MM, Array, from_written, inverse_matrix, stream
+from fakes.world.frames import MM, Array, from_written, inverse_matrix
 from fakes.world.load.payload import Payload
 from fakes.world.scene import Seen
-from fakes.world.truth import drawn_spread
 from fakes.world.views import in_view
-from fakes.world.world import Command, World
+from fakes.world.world import Command
 
 _GRAVITY = np.array([0.0, 0.0, -9.80665])
 _MARKS_FACE_M = (60e-3, 22e-3)
@@ -37,7 +29,7 @@ _SEEN_BEYOND = 1.1
 """What lies so little beside the corner of the picture is drawn, for its edges."""
 
 
-class AntennaBench(World[BenchScenario]):
+class AntennaBench(BenchWorld):
     """Forces at the socket are quasi-static; inertia is that of the gripper alone."""
 
     scenario_model: ClassVar[type[Scenario]] = BenchScenario
@@ -54,41 +46,12 @@ class AntennaBench(World[BenchScenario]):
             mass_kg=gripper.mass_kg,
             com_in_flange_m=nominal.apply(np.array(gripper.com_in_sensor_mm) * MM),
         )
-        spread = drawn_spread(stream(scenario.hardware_seed, "marks"), gripper.marks_spread)
-        self._flange_T_marks = from_written(gripper.flange_T_marks_mm_deg) * spread
-        self._cell_T_plate = plate_pose(
-            scenario, self.truth.cameras[scenario.fixed_camera].mount_T_camera
-        )
         self._board = chessboard_as_made(scenario.board, scenario.hardware_seed, seed)
         self._slope_max = max(_slope_max(optics) for optics in scenario.optics.values())
         self.operator = BenchOperator(self)
-        self.mount = mount_of(gripper.lateral_n_mm, gripper.axial_n_mm)
-        self.loads = self._warmings = self._ticks = 0
+        self._ticks = 0
         self._contact_n = np.zeros(6)
         self._jaws_seen = -1.0
-        self.load()
-
-    def load(self) -> dict[str, Any]:
-        """Lay the next module on the tray and bring the next panel."""
-        self.loads += 1
-        self.parts = draw_parts(self.scenario, self.seed, self.loads, self.faults)
-        gripper = self.scenario.gripper
-        place: Place = "absent" if self.faults.active("empty_tray") else "tray"
-        self.module = ModulePlace(
-            gripper, self.seed + self.loads, place, self.parts.cell_T_tray_plug,
-            from_written(gripper.flange_T_plug_mm_deg), self.faults,
-        )  # fmt: skip
-        self.mating = PlugAtSocket(self.parts.pair, self.mount)
-        return {"load": self.loads}
-
-    def warm(self, kelvin: float) -> dict[str, Any]:
-        """The arm's links take temperatures that differ by so much, from the next motion on."""
-        self._warmings += 1
-        arm = self.arms[self.scenario.gripper.carried_by]
-        rng = stream(self.seed, "warmth", self._warmings)
-        built = self.truth.robots[self.scenario.gripper.carried_by].links
-        arm.truth = replace(arm.truth, links=warmed(built, rng, kelvin))
-        return {"warmings": self._warmings}
 
     def commands(self) -> Mapping[str, Command]:
         """The hands of the operator on the control port."""
@@ -137,33 +100,7 @@ class AntennaBench(World[BenchScenario]):
         turned = sensor[:3, :3].T
         return np.concatenate([turned @ (force + weight), turned @ torque])
 
-    def rests_at(self, cell_T_flange: RigidTransform) -> RigidTransform:
-        """True cell_T_plug: where the springs leave it."""
-        cell_T_plug = self.module.now(cell_T_flange)
-        if self.module.place != "gripper":
-            return cell_T_plug
-        socket = self.parts.cell_T_socket
-        return socket * self.mating.rests_at(socket.inv() * cell_T_plug)
-
     # -- views ----------------------------------------------------------------------------------
-    @property
-    def flange_T_marks(self) -> RigidTransform:
-        """Where the gripper's marks are."""
-        return shifted(self.faults, "marks_shifted", self._flange_T_marks)
-
-    @property
-    def cell_T_plate(self) -> RigidTransform:
-        """Where the reference plate is."""
-        return shifted(self.faults, "plate_shifted", self._cell_T_plate)
-
-    def camera_pose(self, camera: str) -> RigidTransform:
-        """True cell_T_camera, slipped or not."""
-        pose = super().camera_pose(camera)
-        if camera == self.scenario.fixed_camera:
-            return shifted(self.faults, "camera_2_shifted", pose)
-        flange = self.flange(self.scenario.gripper.carried_by)
-        return flange * shifted(self.faults, "camera_1_shifted", flange.inv() * pose)
-
     def bodies_before(self, camera_T_cell: RigidTransform) -> Iterator[Seen]:
         """A calibration board alone; else connectors, marks and dots, or tray and module, as far as
         in view."""
@@ -204,7 +141,7 @@ class AntennaBench(World[BenchScenario]):
     # -- truth ----------------------------------------------------------------------------------
     def truth_report(self) -> dict[str, Any]:
         """Devices as they are, the plug against its socket, pins by their state, forces."""
-        return truth_of(self)
+        return truth_of(self, self.operator.board_at)
 
 
 def _slope_max(optics: Optics) -> float:

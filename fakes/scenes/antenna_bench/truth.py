@@ -1,24 +1,26 @@
 """What nobody in the antenna cell knows exactly, as the control port tells it."""
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from fakes.scenes.antenna_bench.bench import BenchWorld
+from fakes.scenes.antenna_bench.boards import BoardPlace
 from fakes.scenes.antenna_bench.parts import offsets_m, placing_offsets_m
 from fakes.world.connector.insertion import PinState
 from fakes.world.frames import MM, to_written
 from fakes.world.scene import MonoTruth
 
-if TYPE_CHECKING:
-    from fakes.scenes.antenna_bench.scene import AntennaBench
+
+def truth_of(world: BenchWorld, board_at: BoardPlace | None) -> dict[str, Any]:
+    """Poses, the plug against its socket, pins by their state, forces; mm, degrees, N.
+
+    ``board_at`` is where the operator has put the calibration board; None: it is put away.
+    """
+    return {**_devices(world), "board": board_at, **_plug(world)}
 
 
-def truth_of(world: "AntennaBench") -> dict[str, Any]:
-    """Poses, the plug against its socket, pins by their state, forces; mm, degrees, N."""
-    return {**_devices(world), **_plug(world)}
-
-
-def _devices(world: "AntennaBench") -> dict[str, Any]:
+def _devices(world: BenchWorld) -> dict[str, Any]:
     flange = world.flange(world.scenario.gripper.carried_by)
     cell_T_base = world.truth.robots[world.scenario.gripper.carried_by].cell_T_base
     camera_1, camera_2 = world.scenario.carried_camera, world.scenario.fixed_camera
@@ -35,7 +37,6 @@ def _devices(world: "AntennaBench") -> dict[str, Any]:
         },
         "flange_T_marks_mm_deg": to_written(world.flange_T_marks),
         "cell_T_plate_mm_deg": to_written(world.cell_T_plate),
-        "board": world.operator.board_at,
     }
 
 
@@ -49,7 +50,7 @@ def _intrinsics(optics: MonoTruth) -> dict[str, Any]:
     }
 
 
-def _plug(world: "AntennaBench") -> dict[str, Any]:
+def _plug(world: BenchWorld) -> dict[str, Any]:
     flange = world.flange(world.scenario.gripper.carried_by)
     parts, mating = world.parts, world.mating
     cell_T_plug = world.module.now(flange)

@@ -4,6 +4,7 @@ What the arm holds is quasi-static: the contact acts through the compliance of a
 inertia is that of the tool alone and does not bounce on the contact.
 """
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Any, ClassVar
 
@@ -14,14 +15,18 @@ from fakes.scenario_file.scenario import Scenario
 from fakes.scenes.socket.part import FAULTS, draw_part, fit_with, grip_force_n, nominal_fit
 from fakes.scenes.socket.peaks import ForcePeaks
 from fakes.scenes.socket.scenario import SocketScenario
-from fakes.scenes.socket.truth import truth_of
-from fakes.world.frames import MM, Array, from_written, inverse_matrix
+from fakes.world.frames import MM, Array, from_written, inverse_matrix, to_written
 from fakes.world.load.mounted_sensor import STEP_S
 from fakes.world.load.payload import Payload
 from fakes.world.peg.attitude import pose_of
 from fakes.world.peg.held_peg import HeldPeg
 from fakes.world.scene import Seen
 from fakes.world.world import Command, World
+
+_SEAT_MM = 0.3
+"""A peg that is nearer to its seat than this is in: the tolerance of the depth that proves a seat
+(section 5.4 of the study of insertion by touch)."""
+_HOLE_FAULTS = ("hole_absent", "wrong_hole", "wrong_size", "blocked")
 
 
 class SocketScene(World[SocketScenario]):
@@ -108,5 +113,37 @@ class SocketScene(World[SocketScenario]):
         return ()
 
     def truth_report(self) -> dict[str, Any]:
-        """The peg against its hole, seated or not, slip, and the largest forces."""
-        return truth_of(self)
+        """The peg against its hole, seated or not, slip, and the largest forces: mm, degrees, N."""
+        peg, part = self.peg, self.part
+        x, y, z, tilt_x, tilt_y, yaw = peg.pose
+        wanted = self.nominal_fit
+        # Beside the mouth the tip may hang below the face of a plug without being in anything.
+        within = math.hypot(x, y) < peg.fit.mouth_radius_m
+        depth_mm = -z / MM if within else 0.0
+        wrong = [name for name in _HOLE_FAULTS if self.faults.active(name)]
+        # The depth is that of the hole that was wanted: a peg deep in a wrong one is not seated.
+        seated = within and depth_mm > wanted.depth_m / MM - _SEAT_MM and not wrong
+        return {
+            "load": self.loads,
+            "cell_T_flange_mm_deg": to_written(self.flange(self.scenario.peg.carried_by)),
+            "cell_T_hole_mm_deg": to_written(part.cell_T_hole),
+            "flange_T_peg_mm_deg": to_written(part.flange_T_peg),
+            "hole_T_tip_mm": [x / MM, y / MM, z / MM],
+            "tilt_deg": math.degrees(math.hypot(tilt_x, tilt_y)),
+            "yaw_deg": math.degrees(yaw),
+            "depth_mm": depth_mm,
+            "seat_depth_mm": wanted.depth_m / MM,
+            "seated": seated,
+            "hole_faults": wrong,
+            "slip_mm": peg.slip_m / MM,
+            "touching": bool(peg.touching),
+            "force_n": peg.wrench.tolist(),
+            "peak_force_n": _by_window(self.peaks.force_n),
+            "peak_moment_nm": _by_window(self.peaks.moment_nm),
+            "unsolved_steps": peg.failures,
+            "unsolved_percent": 100.0 * peg.unsolved_share,
+        }
+
+
+def _by_window(peaks: dict[int, float]) -> dict[str, float]:
+    return {f"{window}_ms": value for window, value in peaks.items()}

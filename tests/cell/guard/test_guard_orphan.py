@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from fakes.wire.sri.box import SriBox
-from tests.rigs.whole_cell.guard_rig import Robot, noisy, until
+from tests.rigs.waiting import until
+from tests.rigs.whole_cell.guard_rig import Robot, noisy
 from tests.rigs.wire.ports import free_ports
 from tests.rigs.wire.siasun_peer import Peer
 

@@ -5,6 +5,7 @@ import os
 import signal
 import time
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,8 @@ from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits
 from cellctl.guard.report import TripReason
 from fakes.wire.sri.box import SriBox
-from tests.rigs.whole_cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped, until
+from tests.rigs.waiting import until
+from tests.rigs.whole_cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, rig, tripped
 from tests.rigs.wire.ports import free_ports
 
 
@@ -79,11 +81,14 @@ SENSOR_FAULTS = (
 )
 
 
+def has_sample_after(client: GuardClient, time_s: float) -> bool:
+    return client.latest().time_s > time_s
+
+
 async def test_every_fault_of_the_sensor() -> None:
     async with rig(range=(5000.0,) * 3 + (500.0,) * 3) as cell:
         for fault, limits, reason in SENSOR_FAULTS:
-            healthy_s = time.monotonic()
-            await until(lambda since_s=healthy_s: cell.client.latest().time_s > since_s)
+            await until(partial(has_sample_after, cell.client, time.monotonic()))
             await cell.client.arm(limits)
             stops = len(cell.robot.stops_s)
             cell.box.faults.inject(fault)

@@ -16,6 +16,7 @@ from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.report import GuardTrip
 from fakes.wire.sri.box import SriBox
+from tests.rigs.waiting import until
 from tests.rigs.wire.ports import free_ports
 from tests.rigs.wire.siasun_peer import Peer
 
@@ -77,13 +78,6 @@ class Rig:
     robot: Robot
     force: list[float]
     """Fx … Mz that the box measures, without its noise."""
-
-
-async def until(condition: Any, timeout_s: float = 2.0) -> None:
-    """Wait until a condition holds; ``TimeoutError`` if it does not."""
-    async with asyncio.timeout(timeout_s):
-        while not condition():  # noqa: ASYNC110 - what is waited for lies in other processes
-            await asyncio.sleep(0.002)
 
 
 async def tripped(client: GuardClient, timeout_s: float = 2.0) -> GuardTrip:

@@ -6,7 +6,6 @@ from contextlib import asynccontextmanager
 import pytest
 
 from fakes.cell import Cell, PortTaken
-from fakes.operator import Operator
 from fakes.scenario_file.sections import DigitalIo, Gripper
 from fakes.scenes.plate.scenario import PlateScenario
 
@@ -38,7 +37,7 @@ async def test_every_device_listens() -> None:
 
 async def test_hands_switch_inputs_and_bring_parts() -> None:
     async with running(SCENARIO) as (cell, _):
-        handlers = Operator(cell, cell.commands()).handlers()
+        handlers = cell.operator.handlers()
         assert await handlers["outputs"](device="lamps") == {"outputs": {0: False, 1: False}}
         assert await handlers["set_input"](device="lamps", address=1, on=True) == {}
         with pytest.raises(ValueError, match="no input 9"):

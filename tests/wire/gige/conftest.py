@@ -1,8 +1,7 @@
 """Two fake cameras behind the compiled producer, and what their drivers need."""
 
-import asyncio
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -36,13 +35,6 @@ async def descriptors(device: GigeDevice, process: int) -> int:
     # Answered one after the other: what was sent before this answer is closed there.
     await device.set_exposure(0.001)
     return len(os.listdir(f"/proc/{process}/fd"))
-
-
-async def until(happened: Callable[[], bool], within_s: float = 60.0) -> None:
-    """Wait for what another process does; fails when it does not."""
-    async with asyncio.timeout(within_s):
-        while not happened():  # noqa: ASYNC110 - another process has no event
-            await asyncio.sleep(0.005)
 
 
 def ended(process: int) -> bool:

@@ -11,7 +11,8 @@ import pytest
 
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from fakes.gentl.cameras import FakeCameras
-from tests.wire.gige.conftest import LEFT, camera, ended, until
+from tests.rigs.waiting import until, until_blocking
+from tests.wire.gige.conftest import LEFT, camera, ended
 
 NEVER_MS = 600_000
 """An exposure that nobody lives to see."""
@@ -49,7 +50,7 @@ async def test_one_that_dies_while_it_waits_for_an_image_costs_a_fault(
         assert library not in {0, os.getpid()}
         fakes.inject(LEFT, "slow_ms", NEVER_MS)
         waiting = asyncio.create_task(eye.grab())
-        await until(lambda: fakes.begun(LEFT) == 1)
+        await until(lambda: fakes.begun(LEFT) == 1, within_s=60.0)
         os.kill(library, signal.SIGKILL)
         with pytest.raises(LinkLost, match="crashed"):
             await waiting
@@ -65,7 +66,7 @@ async def test_one_that_is_found_dead_is_started_anew_without_a_fault(
     async with camera(producer) as eye:
         library = fakes.opened(LEFT)
         os.kill(library, signal.SIGKILL)
-        await until(lambda: told_its_parent(library))
+        await until(lambda: told_its_parent(library), within_s=60.0)
         image = await eye.grab()
         assert fakes.opened(LEFT) not in {0, library}
     # The first image of a camera that was opened anew.
@@ -102,11 +103,11 @@ def test_one_that_is_busy_ends_with_its_daemon(
     )
     try:
         # While it waits for an image it does not look whether anybody waits for the answer.
-        asyncio.run(until(lambda: fakes.begun(LEFT) == 1 or daemon.poll() is not None))
+        until_blocking(lambda: fakes.begun(LEFT) == 1 or daemon.poll() is not None, within_s=60.0)
         library = fakes.opened(LEFT)
         assert library not in {0, os.getpid(), daemon.pid}
         assert not ended(library)
     finally:
         daemon.kill()
         daemon.wait()
-    asyncio.run(until(lambda: ended(library)))
+    until_blocking(lambda: ended(library), within_s=60.0)

@@ -13,7 +13,8 @@ from cellctl.errors.link import ReplyTimeout
 from drivers.camera.gige.config import GigeHeadConfig, Selection
 from drivers.camera.gige.driver import GigeHead
 from fakes.gentl.cameras import FakeCameras, expected_image
-from tests.wire.gige.conftest import LEFT, RIGHT, camera, until
+from tests.rigs.waiting import until
+from tests.wire.gige.conftest import LEFT, RIGHT, camera
 
 
 def head(producer: Path, **settings: Any) -> GigeHead:
@@ -51,7 +52,7 @@ async def test_both_cameras_wait_for_the_pulse_of_another_device(
     async with head(producer, trigger="Line1", image_timeout_s=5.0) as eyes:
         # Nobody waits for this pulse, so its images are given to nobody.
         fakes.pulse()
-        await until(lambda: fakes.exposures(LEFT) == fakes.exposures(RIGHT) == 1)
+        await until(lambda: fakes.exposures(LEFT) == fakes.exposures(RIGHT) == 1, within_s=60.0)
         grab = asyncio.create_task(eyes.grab())
         before = fakes.exposures(LEFT)
         while not grab.done():
@@ -130,7 +131,7 @@ async def test_an_exposure_is_not_changed_within_the_burst_of_a_camera(
 ) -> None:
     async with camera(producer, burst=3) as eye:
         grab = asyncio.create_task(eye.grab())
-        await until(lambda: fakes.begun(LEFT) >= 1)
+        await until(lambda: fakes.begun(LEFT) >= 1, within_s=60.0)
         change = asyncio.create_task(eye.set_exposure(0.002))
         image, changed_s = await asyncio.gather(grab, change)
         after = await eye.grab()
@@ -145,7 +146,7 @@ async def test_an_exposure_is_not_changed_within_the_burst_of_a_head(
 ) -> None:
     async with head(producer, burst=3) as eyes:
         grab = asyncio.create_task(eyes.grab())
-        await until(lambda: fakes.begun(LEFT) >= 1)
+        await until(lambda: fakes.begun(LEFT) >= 1, within_s=60.0)
         change = asyncio.create_task(eyes.set_exposure(0.002))
         pair, _ = await asyncio.gather(grab, change)
         after = await eyes.grab()

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
+from functools import partial
 
 import pytest
 from pymodbus.client import AsyncModbusTcpClient
@@ -17,6 +18,7 @@ from cellctl.errors.link import ConnectTimeout
 from cellctl.packml import Command, PackMLMachine, RejectCode, State
 from cellctl.packml.result import Result
 from cellctl.runtime.cell_status import CellStatus
+from tests.rigs.waiting import until_answer
 
 ACK, DONE, RESULT, REJECT, HEARTBEAT, STATUS, STATE = 7, 8, 9, 10, 11, 5, 2
 LOST = 1 << 5
@@ -105,16 +107,6 @@ async def inputs(client: AsyncModbusTcpClient) -> list[int]:
     return list(answer.registers)
 
 
-async def until(
-    client: AsyncModbusTcpClient, condition: Callable[[list[int]], bool], timeout_s: float = 3
-) -> list[int]:
-    async with asyncio.timeout(timeout_s):
-        while True:
-            block = await inputs(client)
-            if condition(block):
-                return block
-
-
 @pytest.fixture
 async def line() -> AsyncIterator[Line]:
     line = Line()
@@ -128,7 +120,7 @@ async def line() -> AsyncIterator[Line]:
 async def test_a_command_is_acknowledged_and_later_done(line: Line) -> None:
     port, client = await line.open()
     await line.command(client, 1, Command.START, serial="SAT-0042")
-    block = await until(client, lambda b: b[ACK] == 1)
+    block = await until_answer(partial(inputs, client), lambda b: b[ACK] == 1)
     assert (block[DONE], block[RESULT], block[REJECT]) == (0, 0, 0)
     assert block[STATUS] & 0b10
     assert line.commands[0].command.serial == "SAT-0042"
@@ -143,7 +135,7 @@ async def test_a_refusal_is_a_number_not_a_modbus_exception(line: Line) -> None:
     line.answer = lambda _command: RejectCode.CALIBRATION_INVALID
     _, client = await line.open()
     await line.command(client, 1, Command.START, serial="SAT-1")
-    block = await until(client, lambda b: b[ACK] == 1)
+    block = await until_answer(partial(inputs, client), lambda b: b[ACK] == 1)
     assert (block[DONE], block[RESULT]) == (1, Result.REJECTED)
     assert block[REJECT] == RejectCode.CALIBRATION_INVALID
 
@@ -157,29 +149,29 @@ async def test_a_fault_while_deciding_refuses_and_the_next_command_is_heard(line
     line.answer = answer
     _, client = await line.open()
     await line.command(client, 1, Command.RESET)
-    block = await until(client, lambda b: b[ACK] == 1)
+    block = await until_answer(partial(inputs, client), lambda b: b[ACK] == 1)
     assert block[REJECT] == RejectCode.DEVICE_NOT_READY
     await line.command(client, 2, Command.RESET)
-    assert (await until(client, lambda b: b[ACK] == 2))[REJECT] == 0
+    assert (await until_answer(partial(inputs, client), lambda b: b[ACK] == 2))[REJECT] == 0
 
 
 async def test_nothing_old_is_executed_after_a_restart(line: Line) -> None:
     _, client = await line.open(previous_seq=7)
     await line.command(client, 7, Command.START, serial="SAT-1")
-    block = await until(client, lambda b: b[ACK] == 7)
+    block = await until_answer(partial(inputs, client), lambda b: b[ACK] == 7)
     assert (block[RESULT], block[REJECT]) == (
         Result.IGNORED,
         RejectCode.IGNORED_AFTER_RESTART,
     )
     await line.command(client, 8, Command.RESET)
-    await until(client, lambda b: b[ACK] == 8)
+    await until_answer(partial(inputs, client), lambda b: b[ACK] == 8)
     assert [submission.seq for submission in line.commands] == [8]
 
 
 async def test_the_first_stop_after_a_restart_is_obeyed_whatever_its_number(line: Line) -> None:
     _, client = await line.open(previous_seq=24)
     await client.write_registers(0, [0, Command.ABORT, *[0] * 25, 25])
-    block = await until(client, lambda b: b[ACK] == 25)
+    block = await until_answer(partial(inputs, client), lambda b: b[ACK] == 25)
     assert block[REJECT] == RejectCode.NONE
     assert [one.command.cntrl_cmd for one in line.commands] == [Command.ABORT]
 
@@ -188,7 +180,7 @@ async def test_without_heartbeat_only_stop_and_abort_are_taken(line: Line) -> No
     _, client = await line.open()
     for seq, command in enumerate((Command.RESET, Command.STOP, Command.ABORT), start=1):
         await client.write_registers(0, [1, command, *[0] * 25, seq])
-        await until(client, lambda b, seq=seq: b[ACK] == seq)  # type: ignore[misc]
+        await until_answer(partial(inputs, client), lambda b, seq=seq: b[ACK] == seq)  # type: ignore[misc]
         if seq == 1:
             assert (await inputs(client))[REJECT] == RejectCode.LINE_HEARTBEAT_MISSING
     assert [one.command.cntrl_cmd for one in line.commands] == [Command.STOP, Command.ABORT]
@@ -210,7 +202,7 @@ async def test_another_client_does_not_keep_the_line_alive(line: Line) -> None:
     page = await line.connect(port, "127.0.0.2")
     await line.heartbeat(page)  # the first one to beat, as long as nobody commands
     await line.command(plc, 1, Command.RESET)
-    await until(plc, lambda b: b[ACK] == 1)
+    await until_answer(partial(inputs, plc), lambda b: b[ACK] == 1)
     async with asyncio.timeout(3):
         while not line.lost.is_set():
             await line.heartbeat(page)
@@ -225,12 +217,12 @@ async def test_who_gives_a_command_needs_a_heartbeat_of_its_own(line: Line) -> N
     port, plc = await line.open()
     standby = await line.connect(port, "127.0.0.2")
     await line.command(plc, 1, Command.RESET)
-    await until(plc, lambda b: b[ACK] == 1)
+    await until_answer(partial(inputs, plc), lambda b: b[ACK] == 1)
     await standby.write_registers(0, [1, Command.RESET, *[0] * 25, 2])
-    block = await until(standby, lambda b: b[ACK] == 2)
+    block = await until_answer(partial(inputs, standby), lambda b: b[ACK] == 2)
     assert block[REJECT] == RejectCode.LINE_HEARTBEAT_MISSING
     await line.command(standby, 3, Command.RESET)
-    block = await until(standby, lambda b: b[ACK] == 3)
+    block = await until_answer(partial(inputs, standby), lambda b: b[ACK] == 3)
     assert block[REJECT] == RejectCode.NONE
 
 
@@ -238,9 +230,9 @@ async def test_a_stop_of_another_client_does_not_take_over(line: Line) -> None:
     port, plc = await line.open(timeout_s=0.5)
     page = await line.connect(port, "127.0.0.2")
     await line.command(plc, 1, Command.RESET)
-    await until(plc, lambda b: b[ACK] == 1)
+    await until_answer(partial(inputs, plc), lambda b: b[ACK] == 1)
     await line.command(page, 2, Command.STOP)
-    await until(page, lambda b: b[ACK] == 2)
+    await until_answer(partial(inputs, page), lambda b: b[ACK] == 2)
     async with asyncio.timeout(3):
         while not line.lost.is_set():
             await line.heartbeat(page)
@@ -251,10 +243,10 @@ async def test_a_refused_command_does_not_take_over(line: Line) -> None:
     port, plc = await line.open(timeout_s=0.5)
     page = await line.connect(port, "127.0.0.2")
     await line.command(plc, 1, Command.RESET)
-    await until(plc, lambda b: b[ACK] == 1)
+    await until_answer(partial(inputs, plc), lambda b: b[ACK] == 1)
     line.answer = lambda _submission: RejectCode.DEVICE_NOT_READY
     await line.command(page, 2, Command.START)
-    await until(page, lambda b: b[ACK] == 2)
+    await until_answer(partial(inputs, page), lambda b: b[ACK] == 2)
     async with asyncio.timeout(3):
         while not line.lost.is_set():
             await line.heartbeat(page)
@@ -312,7 +304,7 @@ async def test_commands_come_in_order_though_validation_takes_time(line: Line) -
         await line.command(client, seq, Command.RESET)
     assert line.commands == []
     line.disk.set()
-    await until(client, lambda b: b[ACK] == 5)
+    await until_answer(partial(inputs, client), lambda b: b[ACK] == 5)
     assert [submission.seq for submission in line.commands] == [1, 2, 3, 4, 5]
 
 
@@ -326,13 +318,13 @@ async def test_stop_and_abort_wait_for_no_command_and_nothing_older_follows(
     await line.command(client, 1, Command.RESET)
     await line.command(client, 2, Command.UNHOLD)
     await line.command(client, 3, end)
-    block = await until(client, lambda b: b[ACK] == 3)
+    block = await until_answer(partial(inputs, client), lambda b: b[ACK] == 3)
     assert block[REJECT] == 0
     superseded = RejectCode.SUPERSEDED
     assert answers == [(1, superseded), (2, superseded), (3, RejectCode.NONE)]
     line.disk.set()
     await line.command(client, 4, Command.HOLD)
-    await until(client, lambda b: b[ACK] == 4)
+    await until_answer(partial(inputs, client), lambda b: b[ACK] == 4)
     assert [submission.seq for submission in line.commands] == [3, 4]
 
 
@@ -349,7 +341,7 @@ async def test_a_flood_of_commands_drops_the_oldest_with_an_answer_but_no_abort(
     for seq in range(22, 42):
         await line.command(client, seq, Command.HOLD)
     line.disk.set()
-    await until(client, lambda b: b[ACK] == 41)
+    await until_answer(partial(inputs, client), lambda b: b[ACK] == 41)
     assert sorted({seq for seq, _ in answers}) == list(range(1, 42))
     assert line.commands[0].command.cntrl_cmd == Command.ABORT
 
@@ -397,23 +389,25 @@ async def test_a_cycle_of_the_unit_over_the_wire(line: Line) -> None:
     ]
     for seq, (command, state) in enumerate(expected, start=1):
         await line.command(client, seq, command, serial="SAT-0042")
-        block = await until(client, lambda b, seq=seq: b[DONE] == seq)  # type: ignore[misc]
+        block = await until_answer(partial(inputs, client), lambda b, seq=seq: b[DONE] == seq)  # type: ignore[misc]
         assert (block[STATE], block[RESULT]) == (state, Result.GOOD)
     await line.command(client, 6, Command.START, serial="SAT-0042")
-    block = await until(client, lambda b: b[DONE] == 6)
+    block = await until_answer(partial(inputs, client), lambda b: b[DONE] == 6)
     assert block[REJECT] == RejectCode.COMMAND_NOT_ALLOWED
     await line.command(client, 7, Command.UNDEFINED, mode=2)
-    block = await until(client, lambda b: b[DONE] == 7)
+    block = await until_answer(partial(inputs, client), lambda b: b[DONE] == 7)
     assert (block[3], block[RESULT]) == (2, Result.GOOD)
     await line.command(client, 8, Command.UNDEFINED, mode=2)
-    assert (await until(client, lambda b: b[DONE] == 8))[RESULT] == Result.GOOD
+    assert (await until_answer(partial(inputs, client), lambda b: b[DONE] == 8))[
+        RESULT
+    ] == Result.GOOD
     await machine.close()
 
 
 async def test_people_are_shown_what_a_plc_reads_and_has_written(line: Line) -> None:
     port, client = await line.open()
     await line.command(client, 7, Command.START, serial="SAT-0042")
-    block = await until(client, lambda registers: registers[ACK] == 7)
+    block = await until_answer(partial(inputs, client), lambda registers: registers[ACK] == 7)
     shown = {entry["name"]: entry for entry in port.shown()}
     for name, address in (("ack_seq", ACK), ("state", STATE), ("reject_code", REJECT)):
         assert (shown[name]["address"], shown[name]["value"]) == (address, block[address])
@@ -424,7 +418,7 @@ async def test_people_are_shown_what_a_plc_reads_and_has_written(line: Line) -> 
 async def test_a_run_keeps_registers_of_both_sides_without_their_counters(line: Line) -> None:
     port, client = await line.open()
     await line.command(client, 1, Command.RESET, serial="SAT-0042")
-    await until(client, lambda registers: registers[ACK] == 1)
+    await until_answer(partial(inputs, client), lambda registers: registers[ACK] == 1)
     port.publish(CellStatus(state=State.IDLE, serial="SAT-0042"))
     recorded = port.recorded()
     to_line, from_line = recorded["/registers/input"], recorded["/registers/holding"]

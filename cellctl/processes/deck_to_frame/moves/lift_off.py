@@ -22,7 +22,8 @@ LIFT_M = 0.06
 """Height above the seat at which the lift ends; from there the arm moves as in free space. Twice
 ``LOW_M``, so that a deck that was lifted is surely not low any more."""
 SLOW_LIFT_M = 0.015
-"""Height up to which the lift is slow: above the pins, which are shorter."""
+"""Height up to which the lift is slow: above pins of usual length. Longer ones are left at the
+speed of the robot, under the guard as well."""
 SLOW_SPEED_M_S = 2e-3
 """Speed of the stretch after the first: pins and edges are still near."""
 LOW_M = 0.03

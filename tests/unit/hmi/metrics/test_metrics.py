@@ -1,8 +1,7 @@
 """The metrics as Prometheus reads them, with its own parser, from a real process of the page."""
 
-import time
-from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from cellctl.clock import utc_now
 from cellctl.hmi.metrics.history import CellHistory
 from cellctl.hmi.metrics.table import METRICS, metrics_table
 from cellctl.records.files.delivery_file import NAME, DeliveryState, write_state
+from tests.rigs.waiting import until_blocking
 from tests.unit.hmi.conftest import TOKEN
 from tests.unit.hmi.http_client import Client
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
@@ -44,13 +44,6 @@ def asked(page: Client) -> Values:
     return parsed(reply.body)
 
 
-def until(page: Client, condition: Callable[[Values], bool]) -> Values:
-    end_s = time.monotonic() + 10
-    while not condition(found := asked(page)):
-        assert time.monotonic() < end_s
-    return found
-
-
 def test_the_newest_snapshot_is_served(page: Client, paper: PaperDaemon) -> None:
     errors = [{"axis": "x", "unit": "mm", "value": -0.02, "limit": 0.05}]
     step = {"number": 50, "label": "mate", "text": ""}
@@ -59,7 +52,9 @@ def test_the_newest_snapshot_is_served(page: Client, paper: PaperDaemon) -> None
         alarms=[alarm(512, "force"), alarm(635, "payload", "warn")],
         links={"robots.main": "", "force_sensors.wrist": "F207 silent"},
     )  # fmt: skip
-    found = until(page, lambda now: value(now, "state", state="EXECUTE") == 1.0)
+    found = until_blocking(
+        partial(asked, page), lambda now: value(now, "state", state="EXECUTE") == 1.0
+    )
     assert value(found, "state", state="IDLE") == 0.0
     assert value(found, "step") == 50.0
     assert value(found, "line_alive") == 1.0
@@ -87,9 +82,11 @@ def test_the_newest_snapshot_is_served(page: Client, paper: PaperDaemon) -> None
 
 
 def test_what_is_old_is_not_served_as_new(page: Client, paper: PaperDaemon) -> None:
-    until(page, lambda now: value(now, "state", state="IDLE") == 1.0)
+    until_blocking(partial(asked, page), lambda now: value(now, "state", state="IDLE") == 1.0)
     paper.silent = True
-    found = until(page, lambda now: value(now, "state", state="IDLE") is None)
+    found = until_blocking(
+        partial(asked, page), lambda now: value(now, "state", state="IDLE") is None
+    )
     assert (value(found, "hmi_snapshot_age_seconds") or 0.0) > 1.5
     assert value(found, "force_newtons", sensor="wrist", axis="Fz") is None
     assert value(found, "state_seconds_total", state="IDLE") is not None
@@ -112,12 +109,14 @@ def test_every_metric_is_in_the_table_and_every_row_is_served(
     force = snapshot()["forces"][0] | {"wrench": wrench, "peaks": [3.0] * 6}
     errors = [{"axis": "x", "unit": "mm", "value": 0.1, "limit": 0.2}]
     paper.snapshot = snapshot(forces=[force], errors=errors)
-    until(page, lambda now: value(now, "figure", name="error_x", unit="mm") == 0.1)
+    until_blocking(
+        partial(asked, page), lambda now: value(now, "figure", name="error_x", unit="mm") == 0.1
+    )
     paper.snapshot = snapshot(forces=[force], errors=errors, alarms=[alarm(512, "force")],
                               step={"number": 10, "label": "look", "text": ""})  # fmt: skip
-    until(page, lambda now: value(now, "step") == 10.0)
+    until_blocking(partial(asked, page), lambda now: value(now, "step") == 10.0)
     paper.snapshot = snapshot(forces=[force], errors=errors)
-    until(page, lambda now: value(now, "step") == 0.0)
+    until_blocking(partial(asked, page), lambda now: value(now, "step") == 0.0)
     families = {
         family.name: family
         for family in text_string_to_metric_families(page.get("metrics").body.decode())
