@@ -19,7 +19,8 @@ from drivers.robot.siasun.stop_channel import SiasunStopChannel
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
 from fakes.wire.sri.box import SriBox
 from fakes.world.robot import RobotArm
-from tests.rigs.whole_cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy, until
+from tests.rigs.waiting import until
+from tests.rigs.whole_cell.guard_rig import NOTHING, PATIENT, SETTINGS, noisy
 from tests.rigs.wire.duco_rig import duco_rig
 from tests.rigs.wire.job_rig import job_rig
 from tests.rigs.wire.permit_loop import PERMIT, permit_loop

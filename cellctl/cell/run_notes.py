@@ -13,7 +13,7 @@ class RunNote:
 
     topic: str
     time_s: float
-    """Monotonic."""
+    """Monotonic time in seconds."""
     values: Mapping[str, Any]
     """Plain data with units in the names."""
 

@@ -71,7 +71,7 @@ class GuardClient:
         self._degraded: tuple[str, ...] = ()
         self._gravity_compensation: Message | None = None
         self._wrench_frame: Message | None = None
-        """None: the sensor's own."""
+        """The wrench frame that was set last; None for the sensor's own."""
 
     # --- start and end
 

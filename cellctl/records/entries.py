@@ -95,7 +95,7 @@ class RecordedPose:
     parent: str
     child: str
     pose_mm_deg: Six
-    """X, Y, Z, A, B, C."""
+    """X, Y, Z in mm, A, B, C in degrees."""
     sigma_mm_deg: Six | None = None
     """Standard deviations of x, y, z, rx, ry, rz in the axes of the parent."""
     covariance_mm_deg: Matrix | None = None
@@ -189,7 +189,7 @@ class Gauge:
     hole: str
     diameter_mm: float
     source: str
-    """Who measured."""
+    """Name of the person who measured."""
     gauge_id: str | None = None
     """Id of the plug gauge itself; None in stores of schema 1 and 2, empty where nobody named
     one."""

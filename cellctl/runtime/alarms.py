@@ -21,7 +21,7 @@ class ActiveAlarm:
     text: str
     """Text of the fault, with the facts of this occurrence."""
     since: datetime
-    """UTC."""
+    """Time of this occurrence, UTC."""
     run: int | None
 
 

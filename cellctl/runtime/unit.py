@@ -128,7 +128,7 @@ class UnitController:
 
     @property
     def jobs(self) -> JobRunner:
-        """Present and last job."""
+        """Runs the present job, and remembers the last one."""
         return self._jobs
 
     def log_facts(self) -> dict[str, object]:

@@ -18,6 +18,7 @@ from drivers.modbus.signals import SignalMap
 _log = logging.getLogger(__name__)
 Value = TypeVar("Value")
 POLLS_PER_WATCHDOG = 4
+"""Looks at the signals within the time of the coupler's watchdog: two in a row may be late."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,6 +40,7 @@ def _turns() -> tuple[Array, Array, Array]:
 _TURN_FIXED, _TURN_COSINE, _TURN_SINE = _turns()
 _FLANGE = Rotation.from_euler("y", 90, degrees=True)
 _SINGULAR_RAD = np.deg2rad(0.5)
+"""A5 nearer than this to zero counts as singular; assumed, as controllers state no figure."""
 
 
 class OutOfReachError(ValueError):

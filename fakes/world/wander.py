@@ -8,6 +8,8 @@ _WAVES = 24
 """Enough for a normal distribution: over 3000 arms the fourth moment is 2.93 and not 3, and the
 correlation keeps within 0.02 of the exponential."""
 _SHORTEST_M = 2e-3
+"""Shortest wave of the error along the way. The spectrum has no end of its own, and shorter waves
+would act like noise of single reports."""
 
 
 class Wander:

@@ -33,7 +33,7 @@ class Message(BaseModel):
 
 
 class StatusRequest(Message):
-    """Asks, changes nothing."""
+    """A question; it changes nothing."""
 
     request: Literal["status"] = "status"
 
@@ -173,7 +173,7 @@ class RobotAnswer(Message):
     cell: str
     """Name of the cell, by which a service of another one is told."""
     heard: dict[str, dict[str, Any]]
-    """By part and name."""
+    """What was heard, by part and name."""
 
 
 Answer = Taken | Refused | Failed | StatusAnswer | RobotAnswer

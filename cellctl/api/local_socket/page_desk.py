@@ -31,7 +31,7 @@ so that hours of commands are more than enough."""
 NOTED_A_MINUTE = 60
 """Refusals that are noted. Whoever may not even stop the cell could else fill the disk."""
 ROLES: tuple[Role, ...] = ("view", "operate", "maintain")
-"""In rising order."""
+"""Roles in rising order of what they may do."""
 NEEDS: Mapping[str, Role] = {"mode": "maintain", "procedure": "maintain"}
 """Role by request; all others need ``operate``."""
 AT_A_PANEL = frozenset({"start", "reset", "unhold", "mode", "procedure"})

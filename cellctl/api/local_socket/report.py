@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict
 
 
 class StrictModel(BaseModel):
-    """Strict, as the messages are."""
+    """Refuses fields that it does not know, as the messages do."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
@@ -56,7 +56,7 @@ class CalibrationReport(StrictModel):
     problem: str = ""
     """Why production cannot use it; empty when it can."""
     identity: str = ""
-    """By which runs name it."""
+    """Identity by which runs name it."""
 
 
 class RunReport(StrictModel):

@@ -51,7 +51,7 @@ class TerminalSubmission(Submission):
 
     @property
     def reference(self) -> Mapping[str, int | str]:
-        """Nothing for a terminal."""
+        """What the audit log is told besides the command."""
         return self.details
 
     def taken(self) -> None:

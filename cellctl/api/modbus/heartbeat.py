@@ -60,7 +60,7 @@ class HeartbeatWatch:
         return back
 
     def stop(self) -> None:
-        """Watch no longer."""
+        """Stop watching. Idempotent."""
         if self._timer is not None:
             self._timer.cancel()
             self._timer = None
@@ -134,7 +134,7 @@ class LineHeartbeat:
             self._in_command = client
 
     def stop(self) -> None:
-        """Watch no longer."""
+        """Stop watching all clients. Idempotent."""
         for watch in self._watches.values():
             watch.stop()
 

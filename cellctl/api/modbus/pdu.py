@@ -34,7 +34,7 @@ class _Malformed(Exception):
 
 
 class _Unsupported(Exception):
-    """Exception 01."""
+    """The function is not served: exception 01."""
 
 
 class Responder:

@@ -77,12 +77,12 @@ class CommissionedLoop:
     figures: LoopFigures
     """The stiffness, and the greatest dead time of any burst."""
     usual_dead_time_s: float
-    """Median over the bursts."""
+    """Median of the dead times of all bursts."""
     motion_dead_time_s: float
     """From setpoint to measured pose in free air, median; the rest is that of the force."""
     stiffness: StiffnessFit
     fitted: LoopFigures
-    """From the closed loop."""
+    """The same figures, fitted to the closed loop."""
     readings: Array
     """Travel in m and force in N at standstill, shape (n, 2)."""
     answer: StepAnswer
@@ -198,7 +198,7 @@ class _Commissioning:
         return fitted, answer
 
     async def _steps(self, figures: LoopFigures, gains: Array) -> StepAnswer:
-        """Mean over some steps up."""
+        """Mean answer over several steps of the push upwards."""
         speed_m_s = touch_speed_m_s(figures, self._loop.settings.press_n)
         step_n = min(_STEP_N, 0.8 * speed_m_s * float(gains[_Z]))
         law = self._law(figures, gains, speed_m_s)

@@ -31,7 +31,7 @@ class ContactSample:
     """State of the tip at one tick of the stream."""
 
     time_s: float
-    """Monotonic."""
+    """Monotonic time in seconds."""
     task_position_tip_m: Vector
     """(3,), by the controller's encoders, corrected by nothing."""
     task_rotation_tip_rad: Vector

@@ -26,7 +26,7 @@ class MotionKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ContactTick:
-    """One tick."""
+    """One tick of a streamed contact."""
 
     sample: ContactSample
     tip_command: Array
@@ -56,7 +56,7 @@ class TickObserver(ABC):
 
 
 class Observers(TickObserver):
-    """Several, told in their order."""
+    """Tells several observers, in their order."""
 
     def __init__(self, *observers: TickObserver) -> None:
         self._observers = observers
@@ -68,7 +68,7 @@ class Observers(TickObserver):
 
 
 class NoObserver(TickObserver):
-    """Looks away."""
+    """For a contact that nobody records or draws."""
 
     def take(self, tick: ContactTick) -> None:
-        """Keep nothing of it."""
+        """Do nothing with it."""

@@ -49,7 +49,7 @@ class FoundExposure:
     """Share of saturated pixels round the holes."""
     holes: int
     exposures: int
-    """Taken for it."""
+    """How many exposures were taken to find it."""
 
 
 async def found_exposure(

@@ -19,7 +19,7 @@ class RobotNote:
 
     robot: str
     time_s: float
-    """Monotonic."""
+    """Monotonic time in seconds."""
     what: str
     values: Mapping[str, Any]
     """Plain data with units in the names."""

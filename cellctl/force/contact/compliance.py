@@ -40,7 +40,7 @@ class LateralOffset:
         return LateralOffset(self.x_m + step.x_m, self.y_m + step.y_m, self.yaw_rad + step.yaw_rad)
 
     def to(self, target: "LateralOffset") -> "LateralOffset":
-        """The step that leads there."""
+        """The step that leads from this displacement to another one."""
         return LateralOffset(
             target.x_m - self.x_m, target.y_m - self.y_m, target.yaw_rad - self.yaw_rad
         )

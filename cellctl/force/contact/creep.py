@@ -33,9 +33,9 @@ class CreepLaw:
     done_low_n: float
     done_high_n: float
     damping_n_s_m: float
-    """S."""
+    """Damping S of the law."""
     mass_kg: float
-    """M, virtual."""
+    """Virtual mass M of the law."""
     period_s: float
     """T: the time that one step takes altogether."""
     stiffness_n_m: float
@@ -60,7 +60,7 @@ class CreepState:
     """The state of the creep after the steps so far."""
 
     stiffness_n_m: float
-    """k_hat."""
+    """Estimate k_hat of the stiffness."""
     force_n: float
     travel_m: float
     anchor_force_n: float

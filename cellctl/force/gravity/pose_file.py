@@ -28,7 +28,7 @@ class PoseRecord:
     """n still poses and the mean wrench at each."""
 
     base_R_sensor: Rotation
-    """Stacked, length n."""
+    """n rotations, stacked."""
     wrenches: Array
     """Shape (n, 6), N and N·m, sensor axes."""
     roles: tuple[PoseRole, ...]

@@ -15,7 +15,9 @@ class PoseCorrection(Section):
     """The measure-correct loop (paper 2.3)."""
 
     threshold_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
+    """The deck counts as aligned when each coordinate is off by no more (paper eq. 16)."""
     threshold_deg: Annotated[float, Field(gt=0, le=1)] = 0.005
+    """The same for the rotation about each axis."""
     threshold_about_x_deg: Annotated[float, Field(gt=0, le=1)] | None = None
     """About x of the frame, which is known least where x is the line from head to head; None: as
     about the other axes."""
@@ -23,8 +25,11 @@ class PoseCorrection(Section):
     """About z of the frame, which is known best of all, and shifts the pins of a long deck aside;
     None: as about y."""
     max_iterations: Annotated[int, Field(ge=1, le=50)] = 10
+    """Corrections after which the loop is given up."""
     max_correction_mm: Annotated[float, Field(gt=0, le=50)] = 10.0
+    """Largest single correction: a greater one says that something was measured wrongly."""
     max_correction_deg: Annotated[float, Field(gt=0, le=10)] = 1.5
+    """The same for the rotation."""
     frames: Annotated[int, Field(ge=1, le=50)] = 2
     """Pairs a head takes for one measurement to begin with."""
     max_frames: Annotated[int, Field(ge=1, le=200)] = 12
@@ -74,12 +79,14 @@ class Pins(Section):
     compliance: bool = True
     """Give way to them across the approach; else any contact above the seat is a fault."""
     max_travel_mm: Annotated[float, Field(gt=0, le=2)] = 0.2
-    """How far it may give way altogether, and how far it may turn."""
+    """How far it may give way altogether."""
     max_yaw_deg: Annotated[float, Field(gt=0, le=1)] = 0.03
+    """How far it may turn."""
     lateral_stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)] | None = None
     """Upper bound of what is felt across the approach, the robot's own is a safe choice; None:
     ``stiffness_n_per_mm`` of the mating."""
     yaw_stiffness_n_m_per_deg: Annotated[float, Field(ge=10, le=200_000)] = 5300.0
+    """The same about the approach. Too high only makes more moves."""
     search: PinSearch | None = None
     """None: pins that stand on the deck are a fault."""
 
@@ -102,20 +109,27 @@ class Mating(Section):
     limit_force_n: Annotated[float, Field(ge=10, le=500)] = 50.0
     """Force along the approach that must never be exceeded."""
     touch_force_n: Annotated[float, Field(ge=2, le=50)] = 8.0
+    """A force that counts as a touch: the drift of the touch detector is half of it."""
     release_force_n: Annotated[float, Field(ge=6, le=100)] = 15.0
     """Left on the joint for fastening after the hold."""
     max_lateral_force_n: Annotated[float, Field(gt=0, le=500)] = 25.0
     """Across the approach, at any moment; the seated deck may keep four fifths of it."""
     max_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 25.0
+    """About each axis, at any moment; it must leave room for a deck that rests on an edge."""
     max_untared_force_n: Annotated[float, Field(gt=0, le=500)] = 80.0
     """What the compensation may leave at the stand-off before the tare, about 4 % of the weight;
     more is another payload or a deck that touches. The defaults fit 200 kg."""
     max_untared_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 40.0
+    """The same for the moment."""
     max_past_contact_mm: Annotated[float, Field(gt=0, le=2)] = 0.5
+    """No target is commanded farther past the expected contact."""
     contact_window_mm: Annotated[float, Field(gt=0, le=3)] = 0.3
     """Contact earlier or later than expected by more than this is a fault."""
     fast_speed_mm_s: Annotated[float, Field(gt=0, le=20)] = 5.0
+    """Speed while contact is excluded; what vision has not seen is met at it."""
     acceleration_mm_s2: Annotated[float, Field(gt=0, le=200)] = 20.0
+    """Acceleration of all straight moves of the mating: its inertia has to stay far below a
+    contact."""
     stop_latency_ms: Annotated[float, Field(ge=1, le=2000)]
     """Upper bound, used while procedure 107 has no valid result; 107 does not pass beyond it."""
     stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)]
@@ -130,6 +144,7 @@ class Mating(Section):
     part_spread_ratio: Annotated[float, Field(ge=1, le=10)] = 1.5
     """Other parts of this recipe may be so much stiffer than those of procedure 108."""
     max_tries: Annotated[int, Field(ge=1, le=5)] = 3
+    """Attempts after a false seat, each measured anew, before the run is given up."""
     pins: Pins | None = None
     """None: no pins are met while mating."""
 
@@ -147,6 +162,7 @@ class DeckRecipe(Recipe):
     frame_features: str
     """Feature file, relative to the cell file."""
     deck_features: str
+    """The same for the deck."""
     deck_thickness_mm: Annotated[float, Field(gt=0, le=200)]
     """D1 of the paper."""
     deck_thickness_sigma_mm: Annotated[float, Field(gt=0, le=1)]
@@ -165,6 +181,7 @@ class DeckRecipe(Recipe):
     station_tolerance_mm: Annotated[float, Field(gt=0, le=100)] = 15.0
     """A frame or deck measured farther than this from its nominal place is refused."""
     station_tolerance_deg: Annotated[float, Field(gt=0, le=20)] = 3.0
+    """The same for its rotation."""
     seated_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.2
     """Lateral offset at a pin hole that the seated deck may have."""
     seated_gap_limit_mm: Annotated[float, Field(gt=0, le=5)] = 0.1

@@ -50,7 +50,7 @@ class SurroundingReading:
 
     @property
     def instrument(self) -> str:
-        """Empty where nobody named one."""
+        """Name of the instrument; empty where nobody named one."""
         return str(self.entry.detail.get(_INSTRUMENT, ""))
 
 

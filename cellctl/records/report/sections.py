@@ -111,7 +111,7 @@ class Part:
 
     role: str
     serial: str
-    """Empty where nobody has named it."""
+    """Serial number; empty where nobody has named it."""
 
 
 class RecordPart(Enum):

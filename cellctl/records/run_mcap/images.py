@@ -30,7 +30,9 @@ from cellctl.records.run_mcap.sources import RunSources
 from cellctl.vision.camera.ellipse import Ellipse
 
 JPEG_QUALITY = 80
+"""For looking at; measurements are made from the raw images, which the run keeps."""
 OUTLINE_POINTS = 36
+"""Corners of the line that is drawn for an ellipse: one every 10°, which looks round."""
 _NAME = re.compile(r"raw/(?P<look>.+?)-frame-\d+(?:-(?P<view>.+))?\.pgm\.zst")
 _PICTURES = {"image/jpeg": "jpeg", "image/png": "png"}
 _USED = Color(r=0.2, g=0.9, b=0.2, a=1.0)

@@ -11,6 +11,7 @@ Panel = tuple[str, dict[str, Any]]
 """Name of the panel, kind first, and its settings."""
 _WRENCH = ("fx_n", "fy_n", "fz_n")
 _MOST_IMAGES = 4
+"""Panels of images beside each other: what fits a screen, and both sides of two heads."""
 
 
 def layout_for(topics: Iterable[str]) -> str:

@@ -31,7 +31,7 @@ class EarlierRun:
     """What the line is shown of the last run before this start."""
 
     number: int
-    """Recipe or procedure."""
+    """Number of the recipe or procedure."""
     serial: str
     run_number: int
 

@@ -85,7 +85,7 @@ class SeenCamera:
     """A camera that a producer sees; empty texts for what that does not say."""
 
     producer: str
-    """Its file."""
+    """File of the producer."""
     id: str
     vendor: str
     model: str
@@ -127,7 +127,7 @@ class SentImage:
     width: int
     height: int
     size: int
-    """Bytes."""
+    """Size in bytes."""
     device_time_ns: int
     """Time of the exposure by the camera's own clock."""
     trigger_s: float

@@ -39,7 +39,7 @@ class SriConfig(BaseModel):
     """Further arguments of that interface, for example bitrate."""
     can_command_id: CanId = 0x80
     can_data_ids: tuple[CanId, CanId, CanId] = (0x291, 0x292, 0x293)
-    """Fx Fy, Fz Mx, My Mz."""
+    """CAN ids of the three messages of a sample: Fx Fy, Fz Mx, My Mz."""
 
     rate_hz: Annotated[float, Field(ge=1.0, le=4000.0)] = 1000.0
     rate_tolerance: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
@@ -47,7 +47,7 @@ class SriConfig(BaseModel):
     unit: Unit = "E"
     """Unit of the samples: E newtons, C converter counts, M bridge signals."""
     points: Annotated[int, Field(ge=1, le=80)] = 1
-    """Samples in a frame."""
+    """Samples in a frame of the stream."""
     filter_weights: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=16)] = (1,)
     """Weighted moving mean inside the box, the newest sample last; (1,) is none."""
     check: Check = "SUM"

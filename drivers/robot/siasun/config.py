@@ -24,6 +24,7 @@ class _Section(BaseModel):
     robot_address: str = ""
     """Address of the controller, or a network; others are refused. Not needed on loopback."""
     connect_timeout_s: Seconds = 10.0
+    """Longest wait for the job programs of the robot, which call this PC every half second."""
     max_deadman_s: Seconds = 0.5
     """A job program that would keep moving longer than this without a heartbeat is refused."""
 
@@ -58,15 +59,23 @@ class MotionLimits(BaseModel):
     """Corners of a wider box for the flange in joint moves; None: that of all other moves."""
     joint_workspace_max_mm: Point | None = None
     max_speed_mm_s: Annotated[float, Field(gt=0.0, le=2000.0)]
+    """Greatest speed of the flange on a straight way; a faster move is refused."""
     max_acceleration_mm_s2: Annotated[float, Field(gt=0.0, le=5000.0)] = 1000.0
+    """Greatest acceleration of a straight move."""
     max_joint_speed_percent: Annotated[int, Field(ge=1, le=100)] = 25
+    """Greatest speed of a joint move, as a share of the rated speed of each joint. It is low
+    as long as the cell file states no other."""
     max_step_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
+    """Longest single step in contact. The job programs offer as much (STEPMAX in
+    docs/protocols/sjl-1.md); the lesser of both counts."""
     max_stream_step_mm: Annotated[float, Field(gt=0.0, le=2.0)] = 0.1
     """Greatest way of a streamed setpoint in one tick of the controller."""
     max_stream_step_deg: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
+    """Greatest turn of a streamed setpoint in one tick of the controller."""
     max_stream_travel_mm: Annotated[float, Field(gt=0.0, le=200.0)] = 30.0
     """Greatest distance of a streamed setpoint from where the stream began."""
     max_stream_travel_deg: Annotated[float, Field(gt=0.0, le=30.0)] = 5.0
+    """Greatest turn of a streamed setpoint against where the stream began."""
     max_stream_loss_s: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     """Longest time without a setpoint or without a tick before a stream must end."""
     arrival_tolerance_mm: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
@@ -103,7 +112,10 @@ class SiasunConfig(_Section, MotionLimits, ErrorList):
     reply_timeout_s: Seconds = 1.0
     """Longest wait for the answer to a command, and then for the state to show its effect."""
     stop_timeout_s: Seconds = 3.0
+    """Longest wait for the standstill after a stop; then the links are dropped, and the dead man
+    stops the arm."""
     move_timeout_s: Seconds = 120.0
+    """Longest move. One that takes longer is stopped: its end may have got lost."""
     stale_s: Seconds = 0.25
     """No motion starts on a state older than this."""
     silence_s: Seconds = 0.5

@@ -27,7 +27,9 @@ class _Controller(BaseModel):
     euler: EulerOrder
     """How this controller writes an orientation. To be verified on site; there is no default."""
     connect_timeout_s: Seconds = 5.0
+    """Longest wait for all connections and a first state."""
     reply_timeout_s: Annotated[float, Field(gt=0.0, le=10.0)] = 0.5
+    """Longest wait for a reply. Calls return at once, also those that begin a motion."""
     heartbeat_ms: Annotated[int, Field(ge=50, le=2000)] = 400
     """The controller stops the arm when it has had no heartbeat of a client for so long."""
 
@@ -41,13 +43,18 @@ class SiasunRpcConfig(_Controller, MotionLimits, ErrorList):
     rearm_word: Word | None = None
     """Word register in which this driver acknowledges them."""
     poll_period_s: Annotated[float, Field(ge=0.005, le=0.1)] = 0.02
+    """Pause between two questions for the state of the arm: as often as other robots report."""
     stop_timeout_s: Seconds = 3.0
+    """Longest wait for the standstill after a stop; then the connections are dropped, and the
+    missing heartbeat stops the arm."""
     move_timeout_s: Seconds = 120.0
+    """Longest move. One that takes longer is stopped: its end may have got lost."""
     stale_s: Seconds = 0.25
     """No motion starts on a state older than this."""
     silence_s: Seconds = 0.5
     """A controller that answers nothing, or sends no state frame, for this long counts as lost."""
     joint_acceleration_percent: Annotated[int, Field(ge=1, le=100)] = 25
+    """Acceleration of joint moves, as a share of the rated one."""
     servo_period_ms: Annotated[int, Field(ge=10, le=100)] | None = None
     """Period of streamed setpoints. None, as long as it was not measured on this arm and this PC:
     streamed motion is not offered then. Shorter ones are not proven (docs/protocols/siasun-rpc.md,
@@ -55,8 +62,12 @@ class SiasunRpcConfig(_Controller, MotionLimits, ErrorList):
     servo_joint_speed_deg_s: Annotated[float, Field(gt=0.0, le=225.0)] = 20.0
     """Greatest speed of any joint in streamed motion, held by the controller."""
     servo_joint_acceleration_deg_s2: Annotated[float, Field(gt=0.0, le=2000.0)] = 200.0
+    """Greatest acceleration of any joint in streamed motion, held by the controller: the speed
+    above is reached in a tenth of a second."""
     servo_smooth_speed: Annotated[float, Field(ge=1.0, le=10.0)] = 1.0
+    """Smoothing of the servo call; 1 is none. Smoothing would add to the dead time of a contact."""
     servo_smooth_acceleration: Annotated[float, Field(ge=0.0, le=1.0)] = 0.0
+    """The same for the acceleration; 0 is none."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:

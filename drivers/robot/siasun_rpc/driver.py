@@ -253,7 +253,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
 
     @contextmanager
     def _claim(self) -> Iterator[Motion]:
-        """One motion at a time."""
+        """The one motion at a time, inside the context."""
         self._motion = Motion(self.name, self._config, self._link)
         try:
             yield self._motion

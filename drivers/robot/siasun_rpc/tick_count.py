@@ -16,13 +16,13 @@ class TickCount:
     began_s: float
     """Beginning of the first tick, by the times of those that came later than they should."""
     tick: int = 1
-    """The present one."""
+    """Number of the present tick."""
     lost: int = 0
     """Ticks that went by without anybody who looked."""
 
     @property
     def end_s(self) -> float:
-        """Of the present tick."""
+        """End of the present tick."""
         return self.began_s + self.tick * self.period_s
 
     def begin_next(self, now_s: float) -> float:

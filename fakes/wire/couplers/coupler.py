@@ -90,7 +90,7 @@ class CouplerServer:
         return self._slice(self._outputs, start, count)
 
     def inputs(self, start: int, count: int) -> Sequence[bool]:
-        """Inputs, likewise."""
+        """Inputs; an address without an input in the middle of others reads as off."""
         return self._slice(self._inputs(self._clock()), start, count)
 
     def registers(self, start: int, count: int) -> Sequence[int]:

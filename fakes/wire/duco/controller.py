@@ -30,7 +30,7 @@ class DucoController:
         self._clients = 0
 
     async def start(self) -> None:
-        """Listen."""
+        """Listen on both ports."""
         rpc = await asyncio.start_server(self._accept(self._serve), "127.0.0.1", self.rpc_port)
         state = await asyncio.start_server(self._accept(self._report), "127.0.0.1", self.state_port)
         self._servers = [rpc, state]

@@ -78,7 +78,7 @@ class DucoLogic:
         return to_six(self.arm.encoder_matrix(self.clock()), moving_axes=moving_axes)
 
     def joints(self) -> list[float]:
-        """Radians."""
+        """Joints of the encoders in radians."""
         return [float(angle) for angle in self.arm.joints(self.clock())]
 
     def frame_known(self, tool: str, work_frame: str) -> bool:
@@ -125,7 +125,7 @@ class DucoLogic:
     def move_linear(
         self, pose: list[float], speed_m_s: float, acceleration_m_s2: float, frames: tuple[str, str]
     ) -> int:
-        """movel."""
+        """Straight move to a pose (movel)."""
         if not self.frame_known(*frames):
             return self._refuse(TaskEnd.PARAMETERS, f"unknown frame {frames}")
         target = RigidTransform.from_matrix(self._matrix(pose))

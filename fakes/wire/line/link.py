@@ -13,6 +13,7 @@ from fakes.wire.line.register_map import HEARTBEAT_ADDRESS, INPUT_COUNT, Report,
 HEARTBEAT_PERIOD_S = 0.25
 """Twice as often as the cell asks for at least (docs/plc-integration.md, Heartbeats)."""
 POLL_PERIOD_S = 0.05
+"""How often the input block is read, as by a PLC whose task runs every 50 ms."""
 CELL_SILENT_S = 3.0
 """Time without another heartbeat of the cell after which this PLC gives it up."""
 

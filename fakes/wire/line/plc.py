@@ -29,6 +29,7 @@ from fakes.wire.line.register_map import (
 EXIT_CODES = {"good": 0, "bad": 2, "rejected": 3, "stopped": 4, "aborted": 4, "held": 4}
 TIMEOUT, LOST, MISMATCH = 5, 6, 7
 STEP_TIMEOUT_S = 60.0
+"""Longest wait for one state on the way to Idle: far above any Clear or Reset."""
 _WAYS_TO_IDLE = {"ABORTED": CLEAR, "STOPPED": RESET, "COMPLETED": RESET}
 _QUIET = frozenset({"cell_heartbeat", "force_z_n"})
 """Change all the time; printed with whatever else changes, or twice a second."""

@@ -27,10 +27,12 @@ from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.robot import RobotArm
 
 JOB_VERSION = "1.0"
-# docs/protocols/sjl-1.md, sections 1, 3 and 6.
 _RETRY_S = 0.5
+"""Pause between two attempts to reach the PC (docs/protocols/sjl-1.md, section 1)."""
 _HELLO_TIMEOUT_S = 2.0
+"""Longest wait for the answer to a hello (section 3)."""
 _STAT_PERIOD_S = 0.02
+"""Time from report to report (section 6)."""
 _TICK_S = 0.004
 """Job programs look at their sockets once in an interpolation cycle, which takes 4 to 12 ms."""
 

@@ -61,7 +61,7 @@ class Suspension:
 
     @property
     def rate(self) -> Array:
-        """Its rate, shape (6,)."""
+        """Rate of change of the place, shape (6,)."""
         return self.state[6:]
 
     @property

@@ -25,7 +25,7 @@ class Rub:
 
     deflection: Vector3
     force_n: float
-    """Along -``along``."""
+    """Size of the force; it points against ``along``."""
     along: Vector3
     across: Vector3
     slips: bool

@@ -24,11 +24,12 @@ class AdmittanceGains:
     """Gains of six axes; all of shape (6,)."""
 
     mass: Array
-    """kg, kg·m²; virtual. It matters little as long as M/S is short against the dead time."""
+    """Virtual mass M in kg, and in kg·m² about the axes. It matters little as long as M/S is short
+    against the dead time."""
     damping: Array
-    """N·s/m, N·m·s/rad."""
+    """Damping S in N·s/m, and in N·m·s/rad about the axes."""
     spring: Array
-    """N/m, N·m/rad; 0 on an axis whose force is controlled."""
+    """Spring K in N/m, and in N·m/rad about the axes; 0 on an axis whose force is controlled."""
     follows: NDArray[np.bool_]
     """An axis that does not follow is stiff: it stays where it is."""
 

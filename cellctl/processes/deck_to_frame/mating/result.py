@@ -61,7 +61,7 @@ class GivingWay:
     """One move across the approach."""
 
     reading: Reading
-    """Before it."""
+    """The reading before the move."""
     move: LateralOffset
     total: LateralOffset
     """Displacement from the stand-off after the move."""

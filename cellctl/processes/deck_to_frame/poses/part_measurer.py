@@ -61,9 +61,9 @@ class SeenPair:
     """What one head saw, whatever came of it."""
 
     frame: int
-    """From 1 on."""
+    """Number of the exposure, from 1 on."""
     head: int
-    """1 or 2."""
+    """Number of the head, 1 or 2."""
     pair: StereoPair
     found: PairMeasurement | None = None
     """The holes that were measured in it; None where that failed or was not tried."""

@@ -77,7 +77,7 @@ class Thresholds:
     """When the deck counts as aligned (eq. 16)."""
 
     translation_m: float = 0.05 * MM
-    """Per axis."""
+    """Largest error of each coordinate."""
     rotation_rad: tuple[float, float, float] = (float(np.radians(0.005)),) * 3
     """About x, y and z of the frame."""
     uncertainty_share: float = 0.5

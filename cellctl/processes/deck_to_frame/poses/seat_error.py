@@ -59,7 +59,7 @@ class SeatRotation:
     axis: str
     value_deg: float
     uncertainty_deg: float
-    """Expanded."""
+    """Expanded uncertainty of the rotation."""
     limit_deg: float
 
     @property

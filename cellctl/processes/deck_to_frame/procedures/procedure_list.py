@@ -105,7 +105,7 @@ class _OnCell:
         kind: CalibrationKind[StereoResult],
         context: ProcedureContext,
     ) -> ProcedureOutcome:
-        """101, 102."""
+        """Procedures 101 and 102: the cameras of a head."""
         settings = self._cell.settings
         columns, rows = (int(number) for number in settings.board.split("x"))
         board = CalibrationBoard(columns, rows, settings.square_mm * MM)
@@ -120,7 +120,7 @@ class _OnCell:
         )
 
     async def base_frame(self, context: ProcedureContext) -> ProcedureOutcome:
-        """103."""
+        """Procedure 103: the base frame."""
         cell, settings, main = self._cell, self._cell.settings, self._cell.main_config
         turns = AxisTurns(
             start_rad=np.radians(settings.base_frame_joints_deg),
@@ -164,7 +164,7 @@ class _OnCell:
             )
 
     async def board(self, head: str, context: ProcedureContext) -> ProcedureOutcome | None:
-        """104, 105."""
+        """Procedures 104 and 105: the boards of both heads."""
         cell, calibrations = self._cell, self._services.calibrations
         await clear_the_cell(cell, context.board, measuring=cell.head(head))
         return await measure_board(context, cell, head, calibrations, self._waiting)
@@ -184,7 +184,7 @@ class _OnCell:
             )
 
     async def stop_latency(self, context: ProcedureContext) -> ProcedureOutcome:
-        """107."""
+        """Procedure 107: the stop latency."""
         cell = self._cell
         await clear_the_cell(cell, context.board)
         # A result must fit every recipe that it will be used for, so the least bound decides.

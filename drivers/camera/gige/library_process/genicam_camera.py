@@ -24,7 +24,11 @@ from drivers.camera.gige.library_process.trouble import (
 from drivers.camera.gige.protocol import OpenedCamera, SentImage, Trouble
 
 BUFFERS = 4
+"""Images that a camera may have under way. One is asked for at a time; the others are for images
+that come late, or that a free-running camera sends unasked."""
 POLL_MS = 1
+"""How long one look for an image waits inside the library, which holds the interpreter
+meanwhile."""
 _EMPTY_S = 0.003
 """How long one looks for images that were left over: longer than a poll of the event."""
 _ASK_S = 0.5

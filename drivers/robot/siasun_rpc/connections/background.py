@@ -14,7 +14,7 @@ class BackgroundTasks:
         self._tasks: set[asyncio.Task[None]] = set()
 
     def start(self, job: Coroutine[None, None, None]) -> "asyncio.Task[None]":
-        """Run it."""
+        """Run a coroutine as a task."""
         task = asyncio.create_task(job)
         self._tasks.add(task)
         task.add_done_callback(self._forget)

@@ -21,7 +21,11 @@ VERSION = request("get_robot_version")
 BEATS_PER_DEADMAN = 4
 """Heartbeats in the time after which the controller stops the arm: two in a row may be late."""
 RECONNECT_S = 0.3
+"""Pause between two attempts to open the connections again. The arm stands meanwhile: without a
+heartbeat the controller has stopped it."""
 REPEAT_STOP_S = 0.3
+"""A stop after which the arm does not stand is sent again after this time, in which an arm that
+obeys has come to rest."""
 
 
 class RpcLink:
