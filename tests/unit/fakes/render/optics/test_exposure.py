@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.special import ndtr
 
 from fakes.render import api
 from fakes.render.look import options_of
@@ -38,6 +39,16 @@ def test_sway_shifts_smear_widens_and_gain_brightens() -> None:
     assert got_total == pytest.approx(1.02 * total, rel=1e-5)
     assert got_mean - mean == pytest.approx(0.1, abs=1e-4)
     assert got_variance - variance == pytest.approx(0.2**2, abs=2e-3)
+
+
+def test_a_sharp_edge_follows_the_sway_in_full() -> None:
+    x = np.arange(-30.0, 31.0)
+    edge, slope = ndtr(x) * 100.0, np.exp(-0.5 * x**2) * 100.0 / np.sqrt(2.0 * np.pi)
+    picture = np.tile(edge, (61, 1)).astype(np.float32)
+    exposure = Exposure((0.05 / FOCAL_PX, 0.0), (1e-9, 0.0))
+    change = taken(picture, exposure, FOCAL_PX)[30].astype(float) - edge
+    # Least squares, as whoever measures the edge in noise: its place, not its centre of light.
+    assert -(change @ slope) / (slope @ slope) == pytest.approx(0.05, rel=0.03)
 
 
 def test_a_plain_exposure_is_the_picture_itself() -> None:
