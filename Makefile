@@ -94,6 +94,7 @@ bench: bench-metrology bench-looks bench-hand-eye bench-guard
 
 bench-metrology: venv
 	$(BIN)/python -m benchmarks.metrology.accuracy
+	$(BIN)/python -m benchmarks.metrology.deck_over_frame
 
 bench-looks: venv
 	$(BIN)/python -m benchmarks.metrology.looks

@@ -3,6 +3,7 @@
 What the loop sees is what it sees in `cellctl demo`: the same world, renderer and calibrations.
 """
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from cellctl.geometry.pose import Array
 from cellctl.geometry.units import in_mm_deg
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, combined
-from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds
+from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds, target_M_T_D
 from cellctl.processes.deck_to_frame.recipe import PoseCorrection
 from cellctl.processes.deck_to_frame.run import SHARE_OF_ONE_PART
 from cellctl.vision.features.feature_file import FeatureFile
@@ -25,6 +26,7 @@ from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 from fakes.world.arm import inverse
 from fakes.world.frames import from_written
+from fakes.world.scene import CameraScene
 
 SCENARIO = Path(__file__).parents[2] / "config" / "deck.scenario.toml"
 FRAME_S = 1.137
@@ -32,6 +34,16 @@ FRAME_S = 1.137
 multiple of the period with which the arms sway."""
 SETTLE_S = 1.5
 SPEED_M_S, ACCELERATION_M_S2 = 0.05, 0.2
+
+HEADS = "head_1", "head_2"
+
+
+@dataclass(frozen=True, slots=True)
+class Shot:
+    """One pair of images and the scene that they show."""
+
+    scene: CameraScene
+    images: tuple[Image, Image]
 
 
 class FakeStation:
@@ -41,7 +53,7 @@ class FakeStation:
         self.world = DeckOnFrame(scenario, seed)
         self._geometry = geometry
         assert scenario.rendering is not None  # the scenario's model demands it of cameras
-        self._look = options_of(
+        self.look = options_of(
             scenario.rendering,
             glare=scenario.size_of("glare"),
             tilt_shading=scenario.size_of("tilt_shading"),
@@ -64,6 +76,13 @@ class FakeStation:
         arm = self.world.arms["main"]
         arm.start_linear(self.world.time_s, base_T_flange, SPEED_M_S, ACCELERATION_M_S2)
         self.world.advance(arm.standstill_s + SETTLE_S)
+
+    def to_stand_off(self, height_m: float) -> None:
+        """The deck so high over its frame, as well as the arm knows."""
+        parts = self.world.placed.parts
+        assert parts is not None
+        above = target_M_T_D(0.0, height_m)
+        self.move_flange(parts.cell_T_frame * above * parts.flange_T_deck.inv())
 
     def _to_taught(self, robot: str, name: str) -> None:
         arm = self.world.arms[robot]
@@ -102,20 +121,26 @@ class FakeStation:
     def _one_frame(
         self, features: FeatureFile, c1_T_part: RigidTransform
     ) -> tuple[PairMeasurement, PairMeasurement]:
-        self.world.advance(self.world.time_s + FRAME_S)
+        self.wait()
         predictions = self._geometry.camera_T_part(c1_T_part)
         models = self._geometry.head_1, self._geometry.head_2
         holes = features.seen_by(1), features.seen_by(2)
         one, two = (
-            measure_pair(*self._images(head), models[i], holes[i], camera_T_part=predictions[i])
-            for i, head in enumerate(("head_1", "head_2"))
+            measure_pair(*self.shot(head).images, models[i], holes[i], camera_T_part=predictions[i])
+            for i, head in enumerate(HEADS)
         )
         return one, two
 
-    def _images(self, head: str) -> tuple[Image, Image]:
-        frame = render_frame(self.world.camera_scene(head), self._look)
+    def wait(self) -> None:
+        """Until the next pair of images is taken."""
+        self.world.advance(self.world.time_s + FRAME_S)
+
+    def shot(self, head: str) -> Shot:
+        """What a head takes now."""
+        scene = self.world.camera_scene(head)
+        frame = render_frame(scene, self.look)
         left, right = np.frombuffer(frame.payload, np.uint8).reshape(2, frame.height, frame.width)
-        return left, right
+        return Shot(scene, (left, right))
 
 
 def _sigma_in_part(pose: PartPose) -> Array:

@@ -9,7 +9,6 @@ from benchmarks.metrology.fake_station import FakeStation
 from benchmarks.metrology.loop import Setting
 from cellctl.geometry.pose import MM, Array, pose_error
 from cellctl.processes.deck_to_frame.poses.part_measurer import HeadGeometry, combined
-from cellctl.processes.deck_to_frame.poses.pose_correction import target_M_T_D
 from cellctl.vision.features.feature_file import FeatureFile
 from cellctl.vision.registration.part_pose import PartPose
 from cellctl.vision.registration.relative_pose import RelativePose, relative_pose
@@ -35,13 +34,6 @@ class MeasuringStation(FakeStation):
         assert deck is not None
         cell_T_part = parts.cell_T_frame if part == "frame" else deck
         return self.world.camera_pose("head_1").inv() * cell_T_part
-
-    def to_stand_off(self, height_m: float) -> None:
-        """The deck so high over its frame, as well as the arm knows."""
-        parts = self.world.placed.parts
-        assert parts is not None
-        above = target_M_T_D(0.0, height_m)
-        self.move_flange(parts.cell_T_frame * above * parts.flange_T_deck.inv())
 
     def looks(
         self, part: str, features: FeatureFile, geometry: HeadGeometry, frames: int
