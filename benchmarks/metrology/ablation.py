@@ -13,7 +13,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # Threads only slow the smal
 import argparse
 import sys
 from collections import defaultdict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from typing import Any, Literal
@@ -26,9 +26,12 @@ from rich.progress import track
 from rich.table import Table
 
 from benchmarks.metrology.accuracy import MACHINED_GREY
+from benchmarks.metrology.deck_over_frame import STEP_GREY, looks_of
 from benchmarks.metrology.drawn_scenes import Scene, drawn_scene
+from benchmarks.metrology.fake_station import SCENARIO
 from benchmarks.metrology.figures import HoleErrors
 from benchmarks.metrology.looks import measure
+from benchmarks.metrology.loop import Setting
 from cellctl.vision.features.countersink import Countersink
 from cellctl.vision.features.pin import Pin
 from cellctl.vision.features.thread import Thread
@@ -44,9 +47,11 @@ from cellctl.vision.rim import (
     stereo_fit,
 )
 from fakes.render import api
+from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from tests.rigs.metrology.scenes import parts
 
 PARTS: dict[str, Literal["deck", "frame"]] = {"deck": "deck", "frame": "frame"}
+HANGING = "deck over frame"
 WALLS = ("lit wall", "bright wall", "fading wall", "faint wall")
 CONES = ("flat cone", "bright cone", "near cone", "narrow cone", "true cone")
 THREADS = ("turns", "chamfered turns", "frame")
@@ -64,7 +69,7 @@ class Term:
 
     name: str
     images: tuple[str, ...]
-    """Looks, and the parts ``deck`` and ``frame``."""
+    """Looks, the parts ``deck`` and ``frame``, and the deck over the frame."""
     without: tuple[Replacement, ...]
 
 
@@ -124,6 +129,11 @@ TERMS = (
         EVERYTHING,
         ((light, "_middle", lambda pixels, *_: pixels.points),),
     ),
+    Term(
+        "bore: any light inside",
+        (*WALLS, "disc", "deck", HANGING),
+        ((selection, "_of_uneven_inside", lambda _, walled: walled),),
+    ),
     Term("half level of a bent edge", ("disc", *WALLS), ((shape, "_bend_px", always(0.0)),)),
     Term(
         "cone: radial slope",
@@ -178,14 +188,14 @@ TERMS = (
         THREADS,
         (
             less(
-                "_inside", slice(5, 7), slice(12, 14), only_if=lambda model: model.turns_grey > 0.0
+                "_inside", slice(5, 7), slice(12, 14), only_if=lambda model: model.uneven_grey > 0.0
             ),
         ),
     ),
     Term(
         "turns: curved with the depth",
         THREADS,
-        (less("_inside", slice(14, 19), only_if=lambda model: model.turns_grey > 0.0),),
+        (less("_inside", slice(14, 19), only_if=lambda model: model.uneven_grey > 0.0),),
     ),
     Term("outliers weigh less", ("lit wall", "turns", "deck"), ((noise, "_HUBER", 1e9),)),
     Term("lower edge must settle", (*WALLS, "deck"), ((solver, "_LOWER_EDGE", 0.0),)),
@@ -215,6 +225,8 @@ TERMS = (
 
 def scenes(image: str, count: int) -> list[Scene]:
     """Scenes of one look, or of one head's half of a machined part."""
+    if image == HANGING:
+        return [scene for seed in range((count + 1) // 2) for scene in _hanging(seed)][:count]
     if image not in PARTS:
         return [drawn_scene(image, seed) for seed in range(count)]
     seen = parts(PARTS[image], api.RenderOptions(), (count + 1) // 2, 1, seed=1)
@@ -223,11 +235,18 @@ def scenes(image: str, count: int) -> list[Scene]:
     return [Scene(view, step) for view, step in zip(views, steps, strict=True)]
 
 
+def _hanging(seed: int) -> Iterator[Scene]:
+    """A deck over its frame, as each head of one fake cell sees it."""
+    scenario = DeckScenario.read(SCENARIO)
+    for _, (view,) in looks_of(Setting.shipped(), scenario, seed, 1, ("60 deck over frame",)):
+        yield Scene(view, {hole.name: STEP_GREY for hole in view.holes})
+
+
 def figures(images: Sequence[str], cache: dict[str, list[Scene]]) -> list[str]:
     """95 % of the errors, median over the bound, normalised error squared, refused, diameters."""
     errors, refused = HoleErrors(), 0
     for image in images:
-        plain = 0 if image in PARTS else 1
+        plain = 0 if image in PARTS or image == HANGING else 1
         for scene in cache[image]:
             refused += measure(scene, errors, "default", skip=plain) is not None
     return [

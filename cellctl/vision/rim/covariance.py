@@ -25,7 +25,7 @@ _LOST = 1.4
 """Factor that makes up for what the fit takes out of these sums: it brings their total to zero."""
 _SHRINK = 0.3
 """Share of the mean over all directions in the estimate of each."""
-_CHANCE = 2.1
+CHANCE = 2.1
 """Sums over a few arcs reach this multiple of what independent errors give by chance alone. Only
 what exceeds it widens the covariance."""
 
@@ -127,4 +127,4 @@ def _widened(covariance: Array, seen: Array) -> Array:
     even = np.trace(whitened) / len(seen) * np.eye(len(seen))
     values, vectors = np.linalg.eigh((1.0 - _SHRINK) * whitened + _SHRINK * even)
     wide = root @ vectors
-    return np.asarray((wide * np.where(values > _CHANCE, values, 1.0)) @ wide.T)
+    return np.asarray((wide * np.where(values > CHANCE, values, 1.0)) @ wide.T)

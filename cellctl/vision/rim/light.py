@@ -30,9 +30,9 @@ class LightModel:
 
     cone: bool = False
     """Outside the rim lies a cone, whose grey varies with the azimuth, not with x and y."""
-    turns_grey: float = 0.0
-    """How uneven the turns of a thread inside the rim are, standard deviation; 0 for an even
-    dark."""
+    uneven_grey: float = 0.0
+    """How uneven what is seen inside the rim is, such as the turns of a thread: standard deviation
+    of each term; 0 for an even dark."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -150,7 +150,7 @@ def _wall(points: Array, shape: RimShape) -> tuple[Array, Array]:
 
 
 def _inside(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, Array]:
-    if light.turns_grey == 0.0:
+    if light.uneven_grey == 0.0:
         # The dark inside of a bore has one level only. Slopes in it would compete with a shift of
         # the rim; where the inside is uneven, a score test asks for a wall instead.
         return _free(np.ones((1, points.shape[1])))
@@ -163,4 +163,4 @@ def _inside(points: Array, shape: RimShape, light: LightModel) -> tuple[Array, A
     level = np.stack([np.ones_like(cos), cos, sin, double_cos, double_sin, triple_cos, triple_sin])
     band = (radius - 1.0) / _THREAD_BAND
     terms = np.concatenate([level, level * band, level[:5] * band**2])
-    return terms, np.array([np.inf, *[light.turns_grey] * (len(terms) - 1)])
+    return terms, np.array([np.inf, *[light.uneven_grey] * (len(terms) - 1)])

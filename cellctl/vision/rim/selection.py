@@ -13,6 +13,7 @@ from scipy.special import expit
 from cellctl.geometry.pose import Array
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import SecondEdge
+from cellctl.vision.rim.covariance import CHANCE, with_covariance
 from cellctl.vision.rim.fit_input import RimFitInput
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.problem import add_to_diagonal, with_unit_diagonal
@@ -38,6 +39,9 @@ _WALL_DEPTHS_M = (1e-3, 2e-3, 4e-3, 9e-3)
 """Depths at which a fit may start: it converges from above the true one, not always from below."""
 _HINT_GAIN = 4.0
 """Fall of chi square from which on a fit with a wall is worth its time."""
+_WORSE = 0.4
+"""Rise of the information criterion for each pixel, residuals half as large again in their squares,
+beyond which a smooth light inside is no better explanation than a wall."""
 
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
@@ -45,8 +49,10 @@ _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
 """Prior of the blur about the first guess, and about what other rims of the image have shown."""
 _WALL_M, _WALL_SIGMAS = 2e-3, 4.0
 """Depth of a wall that may be all that there is, and its standard deviation over it."""
-_TURNS_GREY = 15.0
-"""Expected unevenness of the turns of a thread: standard deviation of each term."""
+_UNEVEN_GREY = 15.0
+"""Expected unevenness of the turns of a thread, or of what is seen through a bore: standard
+deviation of each term."""
+_NO_SPREAD: Array = np.zeros((2, 2))
 _PIXELS_ALIKE = 10.0
 """Number of neighbouring pixels whose model errors are alike: evidence is divided by it."""
 
@@ -127,24 +133,46 @@ def fit_single_image(given: RimFitInput) -> SelectedFit:
     problem = single_image_problem(given.pixels, bare, light, radius, across_lay)
     plain = full_fit(problem, bare.vector)
     if not kind.may_show_wall:
-        return SelectedFit(plain, np.zeros((2, 2)))
-    # The test needs one linear solve, a fit with a wall many. A rim that it passes is done.
+        return SelectedFit(plain, _NO_SPREAD)
+    # The test needs one linear solve, a further fit many. A rim that it passes is done.
     tests = ScoreTests(plain)
     ratio, gain = tests.likely_wall([depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M])
-    if gain < _HINT_GAIN and not tests.uneven_inside():
-        return SelectedFit(plain, np.zeros((2, 2)))
+    uneven = tests.uneven_inside()
+    if gain < _HINT_GAIN and not uneven:
+        return SelectedFit(plain, _NO_SPREAD)
     shape = replace(plain.shapes[0], wall_ratio=ratio)
     with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
-    return _likelier(plain, full_fit(with_wall, shape.vector))
+    walled = full_fit(with_wall, shape.vector)
+    return _likelier(plain, _of_uneven_inside(plain, walled) if uneven else walled)
 
 
-def _likelier(plain: RimFit, walled: RimFit) -> SelectedFit:
+def _of_uneven_inside(plain: RimFit, walled: RimFit) -> RimFit:
+    """The better fit of a rim whose inside is not even: with a wall, or with any smooth light.
+
+    Through a bore another part may be seen, whose edges lie anywhere inside the rim. No wall looks
+    like that, and one that is fitted nonetheless takes the rim with it.
+    """
+    anything = replace(plain.problem.light, uneven_grey=_UNEVEN_GREY)
+    smooth = full_fit(replace(plain.problem, light=anything), plain.solution.vector)
+    behind = smooth.bic(held=True) - walled.bic(held=True)
+    allowed = 0.0
+    if _pulled(walled) and not _pulled(smooth):
+        allowed = _WORSE * len(smooth.solution.residuals)
+    return smooth if behind < allowed else walled
+
+
+def _pulled(fit: RimFit) -> bool:
+    """Whether the residuals pull at the centre by more than chance."""
+    return with_covariance(fit, _NO_SPREAD).misfit > CHANCE
+
+
+def _likelier(plain: RimFit, other: RimFit) -> SelectedFit:
     """The better one by the information criterion; the other widens its covariance."""
-    for_wall = float(expit(0.5 * (plain.bic() - walled.bic())))
+    for_other = float(expit(0.5 * (plain.bic() - other.bic())))
     # The probability of the rejected model times the squared distance of its centre is the variance
     # that choosing between them adds.
-    off = walled.solution.vector[:2] - plain.solution.vector[:2]
-    best, against = (walled, 1.0 - for_wall) if for_wall > 0.5 else (plain, for_wall)
+    off = other.solution.vector[:2] - plain.solution.vector[:2]
+    best, against = (other, 1.0 - for_other) if for_other > 0.5 else (plain, for_other)
     return SelectedFit(best, np.outer(off, off) * against)
 
 
@@ -210,7 +238,7 @@ def fit_two_edges(
             RimShape(one.centre, one.roi.nominal_radius, blur, **second_edge)
             for one, blur in zip(given, blurs, strict=True)
         )
-        light = LightModel(turns_grey=_TURNS_GREY)
+        light = LightModel(uneven_grey=_UNEVEN_GREY)
         problem = two_image_problem(pixels, (left, right), light, (blur_sigma, sigma), across_lay)
         return coarse_fit(problem, problem.mean)
 

@@ -56,16 +56,23 @@ class RimFit:
         """The geometry of the rim in each image."""
         return tuple(view.shape(self.solution.vector) for view in self.problem.views)
 
-    def bic(self) -> float:
-        """Bayesian information criterion, to compare models on the same pixels."""
+    def bic(self, *, held: bool = False) -> float:
+        """Bayesian information criterion, to compare models on the same pixels.
+
+        An unknown that a prior holds is not free to follow the noise. With ``held`` it counts by
+        the share of it that the pixels determine, for models that hold very many.
+        """
         residuals = np.abs(self.solution.residuals)
         count = len(residuals)
         # Clipped like the weights of the fit: otherwise one scratch would decide between two
         # models.
         limit = 4.0 * max(median(residuals), 0.2)
         mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
-        # An unknown that a prior holds is not free to follow the noise.
-        free = int(np.count_nonzero(self.solution.precision == 0.0))
+        prior = self.solution.precision
+        free = float(np.count_nonzero(prior == 0.0))
+        if held:
+            shares = 1.0 - prior * self.solution.covariance.diagonal()
+            free += float(np.maximum(shares[prior > 0.0], 0.0).sum())
         return count * float(np.log(mean_square)) + free * float(np.log(count))
 
 
