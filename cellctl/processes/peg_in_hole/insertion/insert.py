@@ -12,7 +12,7 @@ from cellctl.cell.contact_motion.motions import (
     Ended,
     never,
 )
-from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.faults import HoleBlocked, NotSeated, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import (
     Standing,
     greatest_axial_n,
@@ -51,7 +51,7 @@ async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float
 
     The touches of the face had yielded by ``face_yields_m``, so that frame A lies deeper than the
     face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with
-    the figures where the peg stands.
+    the figures where the peg stands, and ``NotSeated`` where no seat stops it.
     """
     if task.fit.keys is not None:
         await find_keyway(motions, task, task.fit.keys)
@@ -70,6 +70,10 @@ async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float
         helped.append(left[0].name)
         motion = await feed.on()
         _require_gain(standing, Standing.of(motion.last), helped)
+    if motion.ended is not Ended.FORCE:
+        # A deeper hole, or a sensor that feels nothing any more: pushes to the sides and a press
+        # would then go on with whatever force the arm has.
+        raise NotSeated(f"nothing has stopped the feed: {Standing.of(motion.last)}")
     return feed.result(motion, tuple(helped))
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import Condition, ContactMotion, ContactSample, Ended
-from cellctl.processes.peg_in_hole.faults import HoleBlocked, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.faults import HoleBlocked, NotSeated, PegJammed, PegWedged
 from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from tests.rigs.insertion.kinematic import KinematicMotions
@@ -104,6 +104,22 @@ def test_recoveries_come_in_order_and_end_after_three() -> None:
 def test_a_straight_peg_at_the_same_depth_twice_is_blocked() -> None:
     with pytest.raises(HoleBlocked, match=r"depth 5\.05 mm"):
         fed(Bore([5.0, 5.05], side_n=0))
+
+
+class _Bottomless(Bore):
+    """A feed that no force stops: a hole too deep, or a sensor that feels nothing."""
+
+    async def feed(
+        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+    ) -> ContactMotion:
+        self.position_m[2] = depth_m
+        return ContactMotion(Ended.TRAVEL, (self.felt(0.5),))
+
+
+def test_a_feed_that_nothing_stops_has_found_no_seat() -> None:
+    bore = _Bottomless([], side_n=0)
+    with pytest.raises(NotSeated, match=r"nothing has stopped the feed: depth 12\.33 mm"):
+        asyncio.run(insert(bore, bore.task, 0.0))
 
 
 def test_a_chip_that_gives_way_is_passed() -> None:
