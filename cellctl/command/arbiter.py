@@ -9,7 +9,7 @@ from cellctl.command.submission import Submission
 from cellctl.command.tracker import CommandTracker
 from cellctl.command.validator import CommandValidator, start_mode
 from cellctl.errors.records import DiskSilent, RecordsError
-from cellctl.packml.command import COMMANDS, Command
+from cellctl.packml.command import COMMAND_NAMES, Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
@@ -17,7 +17,6 @@ from cellctl.records.store import RunStore
 from cellctl.runtime.unit import MAY_MOVE, UnitController
 
 _log = log.get(__name__)
-_NAMES = {int(command): command.name.lower() for command in COMMANDS}
 
 DISK_TIMEOUT_S = 3.0
 """A command is refused when what it needs from the disk is not there after this time. A disk that
@@ -194,4 +193,4 @@ class CommandArbiter:
 
 def _name(command: UnitCommand) -> str:
     """Name of the command for records; "set" for one that sets a mode or acknowledges an alarm."""
-    return _NAMES.get(command.cntrl_cmd, "set")
+    return COMMAND_NAMES.get(command.cntrl_cmd, "set")

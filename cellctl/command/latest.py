@@ -3,11 +3,9 @@
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
-from cellctl.packml.command import COMMANDS, Command
+from cellctl.packml.command import COMMAND_NAMES, Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.unit_command import UnitCommand
-
-_NAMES = {int(command): command.name.lower() for command in COMMANDS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,5 +26,5 @@ class TakenCommand:
 def _name(command: UnitCommand) -> str:
     if command.cntrl_cmd == Command.START and command.in_mode == Mode.MAINTENANCE:
         return "procedure"
-    given = _NAMES.get(command.cntrl_cmd, "")
+    given = COMMAND_NAMES.get(command.cntrl_cmd, "")
     return given or ("mode" if command.unit_mode else "acknowledge")

@@ -21,3 +21,6 @@ class Command(IntEnum):
 
 COMMANDS = tuple(command for command in Command if command is not Command.UNDEFINED)
 """The 10 commands of the standard, without UNDEFINED."""
+
+COMMAND_NAMES = {int(command): command.name.lower() for command in COMMANDS}
+"""The word for each command by its number, as in the API and in records."""

@@ -200,6 +200,8 @@ class _Commissioning:
     async def _steps(self, figures: LoopFigures, gains: Array) -> StepAnswer:
         """Mean answer over several steps of the push upwards."""
         speed_m_s = touch_speed_m_s(figures, self._loop.settings.press_n)
+        # The damper alone takes speed times S. A higher step would be held back by the bound of the
+        # speed and not by the loop, and say nothing about it; the rest is room for the overshoot.
         step_n = min(_STEP_N, 0.8 * speed_m_s * float(gains[_Z]))
         law = self._law(figures, gains, speed_m_s)
         nominal = self._loop.tip_command

@@ -44,7 +44,7 @@ async def open_contact_loop(
 ) -> AsyncIterator[ContactLoop]:
     """The stream and the armed guard; the arm begins out of contact, at standstill.
 
-    The guard watches ``settings.limit_n`` and ``limit_nm`` about the tip; ``watch_closer`` makes
+    The guard watches ``settings.limit_n`` and ``limit_n_m`` about the tip; ``watch_closer`` makes
     them tighter for a phase. Raises ``StreamNotOffered``, ``LoopTooSlow``, ``LoopUnstable``,
     ``NotSettled``, ``GuardRefused``, and on leaving what the stream raises.
     """
@@ -57,7 +57,7 @@ async def open_contact_loop(
     await guard.set_wrench_frame(arm.flange_T_sensor.inv() * frames.flange_T_tip)
     await settle(guard)
     tare = await guard.tare(TARE_S)
-    tolerance = WrenchTolerance(settings.limit_n, settings.limit_nm)
+    tolerance = WrenchTolerance(settings.limit_n, settings.limit_n_m)
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))
         async with robot.stream(limits) as stream:

@@ -25,7 +25,8 @@ class ContactSettings:
     """The press of the search, which must be able to move the arm."""
     limit_n: float
     """A force that no motion may reach, and that the guard stops at."""
-    limit_nm: float
+    limit_n_m: float
+    """The same for a moment about any axis of the tip."""
     lateral_spring_n_m: float = 5e3
     """K sideways while the peg is fed, as simulated in section 4.3 of the study of insertion by
     touch."""
@@ -56,7 +57,7 @@ class ContactSettings:
     """See ``TickRules``."""
 
     @property
-    def tilt_spring_nm_rad(self) -> float:
+    def tilt_spring_n_m_rad(self) -> float:
         """The spring at the rim as one of the attitude: a wide plug would tilt at its seat else."""
         return self.rim_spring_n_m * self.lever_m**2
 

@@ -101,7 +101,7 @@ class StreamedContact(ContactMotions):
         self, direction: Vector, travel_m: float, force_n: float, speed_m_s: float | None = None
     ) -> ContactMotion:
         """See ``ContactMotions``."""
-        across = abs(float(direction[2])) < 1e-9
+        across = abs(float(direction[2])) < 1e-9  # but for the rounding of a unit vector
         if not across:
             self._pressed_n = 0.0
         target = self._loop.tip_command.copy()
@@ -258,7 +258,7 @@ class StreamedContact(ContactMotions):
 
     def _springs(self) -> Array:
         settings = self._settings
-        lateral, tilt = settings.lateral_spring_n_m, settings.tilt_spring_nm_rad
+        lateral, tilt = settings.lateral_spring_n_m, settings.tilt_spring_n_m_rad
         return np.array([lateral, lateral, 0.0, tilt, tilt, 0.0])
 
     def _path(

@@ -103,7 +103,7 @@ class StreamedMotion:
         moving = abs(self.path.speed)
         if self.press is not None:
             moving = max(moving, float(np.abs(self.press.admittance.velocity).max()))
-        return moving < 1e-9
+        return moving < 1e-9  # m/s or rad/s: what braking leaves by rounding
 
     def _check(self, sample: ContactSample) -> None:
         if self.press is None:

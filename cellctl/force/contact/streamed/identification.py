@@ -121,6 +121,7 @@ def fit_delay(sent_s: Array, command: Array, read_s: Array, response: Array) -> 
     fit = least_squares(
         scaled,
         begin,
+        # No loop with a dead time of 0.2 s could press on anything (``check_press``).
         bounds=([0.0, 1e-5], [0.2, 0.2]),
         x_scale=period_s,
         diff_step=np.array([1e-3, 1e-3]),
@@ -187,7 +188,9 @@ def fit_stiffness(travel_m: Array, force_n: Array) -> StiffnessFit:
     variance = float(errors @ errors) / (len(force_n) - 2)
     sigma = np.sqrt(variance / float(np.sum((force_n - force_n.mean()) ** 2)))
     slope = float(solved[0])
-    if slope <= 0 or sigma > 0.3 * slope:
+    # A stiffness that is known worse than by 30 % could not be told from one that ``check_loop``
+    # refuses.
+    if slope <= 0 or sigma > _TOLERANCE * slope:
         raise LoopFitRefused(f"travel grows by {slope * 1e6:.3f} ± {sigma * 1e6:.3f} µm per newton")
     return StiffnessFit(1 / slope, float(sigma) / slope**2, float(np.abs(errors).max()))
 

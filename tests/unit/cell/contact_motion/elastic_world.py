@@ -206,7 +206,7 @@ def contact_loop(
         lever_m=3e-3,
         press_n=8.0,
         limit_n=50.0,
-        limit_nm=2.0,
+        limit_n_m=2.0,
     )
     tare = TareResult(np.zeros(6), np.full(6, world.sigma_n), 500)
     return ContactLoop(

@@ -72,7 +72,7 @@ def test_a_robot_without_a_stream_is_told() -> None:
 
 def test_a_force_limit_that_giving_way_would_pass_is_refused() -> None:
     with pytest.raises(LoopUnstable, match=r"more than half of the limit of 8 N"):
-        ContactSettings(LoopFigures(1e6, 24e-3), 3e-3, 8.0, limit_n=8.0, limit_nm=2.0).check()
+        ContactSettings(LoopFigures(1e6, 24e-3), 3e-3, 8.0, limit_n=8.0, limit_n_m=2.0).check()
 
 
 def test_a_loop_that_is_too_slow_is_refused_before_anything_is_done() -> None:
