@@ -32,6 +32,15 @@ BETWEEN_ARMS = (
         _LOAD, _LOAD.replace("main", "aux_1"), "robots.aux_1.load", "did you mean robots.main.load?"
     ),
     *(
+        deck_elsewhere(
+            "com_mm = [30.0, 20.0,",
+            f"com_mm = [{place}",
+            "force_sensors.force.flange_T_sensor",
+            "so the stored payload has the centre of mass where the load has it",
+        )
+        for place in ("-30.0, 20.0,", "30.0, -20.0,")
+    ),
+    *(
         deck(
             _SENSOR,
             _SENSOR.replace("60.0, 0.0", f"60.0, {turn}"),

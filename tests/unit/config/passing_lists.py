@@ -190,7 +190,7 @@ LISTS = (
     ),
     Kind(
         "a load that differs from the one that was weighed",
-        _at("robots.main.load.com_mm", "0 1", "x10 sign"),
+        _at("robots.main.load.com_mm", "0 1", "x10"),
         remarked=True,
     ),
     Kind(
