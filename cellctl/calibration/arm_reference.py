@@ -18,10 +18,10 @@ from cellctl.interfaces.target_tracker import Target
 LEAST_TARGETS = 3
 """Fewer may all lie where a turn of the arm does not move them."""
 MOVED_M = 0.2e-3
-"""Less than this is no fault: the temperature of arm and floor moves a target so far."""
+"""A smaller displacement is no fault: the temperature of arm and floor moves a target so far."""
 _SIGMAS = 5.0
-"""Smallest displacement that counts as a fault: the temperature of arm and floor moves a target by
-as much."""
+"""Displacement over its standard deviation that counts as a fault where noise is what limits: for
+normal noise in three directions it is exceeded about once in 60,000 looks at one target."""
 _REPEATABILITY_M = 2e-5
 """Standard deviation of a coordinate of the arm, each time that it comes to the place."""
 
@@ -63,7 +63,7 @@ class ArmReference:
 
 
 def require_arm_at_reference(then: ArmReference, now: ArmReference) -> float:
-    """How far the target is from its place that is farthest, in m.
+    """The greatest distance of a target from its place in the reference, in m.
 
     Raises ``ArmOffReference`` when one is farther than noise explains, and ``ArmReferenceMissing``
     when fewer than three are seen again.

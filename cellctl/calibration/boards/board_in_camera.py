@@ -12,6 +12,9 @@ from cellctl.vision.camera.stereo_head import CameraModel
 
 _MIN_CORNERS = 6
 """Four give a pose, but nothing that would show how good it is."""
+_LEAST_SPREAD = 0.01
+"""Width of the corners over their length, both rms. Corners on a line leave the turn about it open;
+those of any board that is in use spread ten times as far."""
 
 
 def board_in_camera(
@@ -19,10 +22,16 @@ def board_in_camera(
 ) -> tuple[UncertainPose, float]:
     """camera_T_board and the rms residual (px, both axes) from points (n, 3) and pixels (n, 2).
 
-    Without ``sigma_px`` the noise is estimated from the residuals. Raises ``BoardPoseInvalid``.
+    Without ``sigma_px`` the noise is estimated from the residuals. Raises ``BoardPoseInvalid`` for
+    fewer than six corners and for corners on a line.
     """
     if len(board_m) < _MIN_CORNERS or len(board_m) != len(pixels):
         raise BoardPoseInvalid(f"{len(pixels)} corners for {len(board_m)} points")
+    length, width, _ = np.linalg.svd(board_m - board_m.mean(axis=0), compute_uv=False)
+    # Refused before solving: the solver makes up a turn about the line, and its normal matrix is
+    # singular only within rounding, so that the covariance would call that turn certain.
+    if not width > _LEAST_SPREAD * length:
+        raise BoardPoseInvalid(f"the {len(board_m)} corners lie on a line")
     is_found, turn, shift = cv2.solvePnP(board_m, pixels, camera.camera_matrix, camera.distortion)
     if not is_found:
         raise BoardPoseInvalid("the corners give no pose")

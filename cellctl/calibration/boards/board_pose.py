@@ -1,5 +1,6 @@
 """Pose of the target board P from its measured discs, weighted, with an outlier test."""
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -73,12 +74,16 @@ def fit_board(
 ) -> BoardPose:
     """Pose of the board; ``disc_sigma_m`` is the drawing's own uncertainty per coordinate.
 
-    Raises ``BoardPoseInvalid`` with fewer than four discs, discs on a line, an unknown
-    name, or discs that do not fit the drawing.
+    Raises ``BoardPoseInvalid`` with fewer than four discs, discs on a line, a name that is unknown
+    or comes twice, or discs that do not fit the drawing.
     """
     unknown = [point.name for point in points if point.name not in drawing]
     if unknown:
         raise BoardPoseInvalid(f"not on the board: {', '.join(unknown)}")
+    counted = Counter(point.name for point in points)
+    # A disc that is read twice would pass for two, of which four are needed.
+    if twice := [name for name, count in counted.items() if count > 1]:
+        raise BoardPoseInvalid(f"measured twice: {', '.join(twice)}")
     used, outliers = list(points), []
     while True:
         pose, residuals, squares, chi2_ratio = _fit(drawing, used, disc_sigma_m)

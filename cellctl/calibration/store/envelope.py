@@ -121,12 +121,20 @@ def parse_content(path: Path, content: Any) -> tuple[StoredCalibration, str]:
     try:
         stored = StoredCalibration(
             kind=str(content["kind"]),
-            record=content["record"],
-            made=datetime.fromisoformat(content["made"]),
-            valid_until=datetime.fromisoformat(content["valid_until"]),
+            record={**content["record"]},
+            made=_moment(content["made"]),
+            valid_until=_moment(content["valid_until"]),
             software=str(content["software"]),
             serial_number=str(content["serial_number"]),
         )
         return stored, str(content["id"])
     except (KeyError, TypeError, ValueError) as error:
         raise CalibrationRecordInvalid(f"{path}: {error!r}") from error
+
+
+def _moment(text: Any) -> datetime:
+    """A time with its zone; one without could be compared with no other."""
+    moment = datetime.fromisoformat(text)
+    if moment.tzinfo is None:
+        raise ValueError(f"{text!r} has no time zone")
+    return moment

@@ -135,7 +135,8 @@ def _joint_angles(stops: Sequence[AxisStop], joint: int) -> Array:
         raise AxisMotionInvalid(f"A{joint + 1}: {len(stops)} stops, at least {MIN_STOPS} needed")
     joints = np.stack([stop.joints_rad for stop in stops])
     others = np.delete(np.ptp(joints, axis=0), joint)
-    if others.max() > _STILL_RAD:
+    # Written so that a joint whose angle is not a number counts as moved.
+    if not others.max() <= _STILL_RAD:
         moved = int(np.delete(np.arange(6), joint)[int(np.argmax(others))]) + 1
         raise AxisMotionInvalid(f"A{moved} moved by {np.degrees(others.max()):.3f}° too")
     return np.asarray(joints[:, joint], dtype=float)

@@ -1,5 +1,7 @@
 """The input file of a hand-eye calibration."""
 
+from collections import Counter
+from collections.abc import Iterator
 from typing import Annotated, Any
 
 import numpy as np
@@ -101,6 +103,18 @@ class HandEyeFile(InputFile):
                 raise ValueError(f"poses, entry {number}: missing 'board_points_mm'")
         return self
 
+    @model_validator(mode="after")
+    def _names_tell_poses_apart(self) -> "HandEyeFile":
+        # Residuals, rejected poses and joints are kept by name: of two poses with one name, one
+        # would be judged by the other's figures.
+        counted = Counter(name for name, _ in self._named())
+        twice = [name for name, count in counted.items() if count > 1]
+        if twice:
+            raise ValueError(
+                f"poses: the name {twice[0]!r} is given to {counted[twice[0]]} of them"
+            )
+        return self
+
     def robot_noise(self) -> RobotNoise:
         """Noise of the reported flange poses."""
         return RobotNoise(self.robot_sigma_mm * MM, float(np.radians(self.robot_sigma_deg)))
@@ -113,15 +127,20 @@ class HandEyeFile(InputFile):
         """
         require_one_wrist(
             {
-                entry.name or f"pose {number}": np.radians(entry.joints_deg)
-                for number, entry in enumerate(self.poses, start=1)
+                name: np.radians(entry.joints_deg)
+                for name, entry in self._named()
                 if entry.joints_deg is not None
             }
         )
         return tuple(
-            HandEyePose(entry.name or f"pose {number}", entry.base_T_flange, self._board(entry))
-            for number, entry in enumerate(self.poses, start=1)
+            HandEyePose(name, entry.base_T_flange, self._board(entry))
+            for name, entry in self._named()
         )
+
+    def _named(self) -> Iterator[tuple[str, HandEyeEntry]]:
+        """Each entry with its name; one without is called by its number."""
+        for number, entry in enumerate(self.poses, start=1):
+            yield entry.name or f"pose {number}", entry
 
     def _board(self, entry: HandEyeEntry) -> UncertainPose:
         """camera_T_board as given, or from corners."""

@@ -33,6 +33,7 @@ from cellctl.processes.deck_to_frame.calibrations import (
     STEREO_HEAD_2,
 )
 from cellctl.processes.deck_to_frame.poses.geometry import CalibrationSet
+from cellctl.sealed_json import content_id
 from tests.rigs.calibration import board_placements, turned_arm
 from tests.rigs.calibration.stereo_views import BOARD, IMAGE_SIZE, make_views
 from tests.unit.calibration.store.shipped import spoil
@@ -198,3 +199,18 @@ def test_missing_file(folder: Path) -> None:
 def test_expired(folder: Path) -> None:
     with pytest.raises(CalibrationExpired, match=r"head_1 \(2027-05-20\)"):
         read_all(folder, UNTIL)
+
+
+@pytest.mark.parametrize(
+    "changed", [{"made": "2026-11-21T08:00:00"}, {"valid_until": "2027-01-01"}, {"record": [1]}]
+)
+def test_a_time_without_zone_and_a_record_without_keys_are_refused(
+    tmp_path: Path, changed: dict[str, Any]
+) -> None:
+    write_stored(tmp_path, StoredCalibration("kind", {}, MADE, UNTIL, "cellctl", ""))
+    file = tmp_path / "kind.json"
+    content = json.loads(file.read_text()) | changed
+    del content["id"]
+    file.write_text(json.dumps(content | {"id": content_id(content)}))
+    with pytest.raises(CalibrationRecordInvalid):
+        read_calibration(tmp_path, "kind")

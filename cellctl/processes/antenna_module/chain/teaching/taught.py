@@ -62,7 +62,8 @@ class PlugCorrection:
         # from it: hence the nearest slot, and a range.
         distances = [_distance(slot.base_T_socket, base_T_socket) for slot in self.slots]
         nearest = int(np.argmin(distances))
-        if distances[nearest] > self.range_m:
+        # Written so that a distance that is not a number is out of range.
+        if not distances[nearest] <= self.range_m:
             raise OutOfTaughtRange(
                 f"{distances[nearest] / MM:.0f} mm from slot {self.slots[nearest].name}, "
                 f"allowed {self.range_m / MM:.0f} mm"

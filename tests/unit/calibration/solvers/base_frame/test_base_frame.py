@@ -145,3 +145,13 @@ def test_record_and_picture() -> None:
     assert again.checks == result.checks
     assert base_frame_picture(result).startswith(b"\x89PNG")
     assert base_frame_picture(again).startswith(b"\x89PNG")
+
+
+def test_a_joint_without_a_reading_counts_as_moved() -> None:
+    stops = [sweep(np.random.default_rng(0), joint, 90) for joint in (0, 1)]
+    unread = [
+        AxisStop(np.where(np.arange(6) == 4, np.nan, stop.joints_rad), stop.targets)
+        for stop in stops[0]
+    ]
+    with pytest.raises(AxisMotionInvalid, match="A5 moved"):
+        calibrate_base_frame(unread, stops[1], ARM, noise=NOISE)

@@ -34,3 +34,12 @@ def test_a_pose_of_another_wrist_is_named() -> None:
 def test_joints_are_six_numbers() -> None:
     with pytest.raises(ValueError, match="six numbers"):
         file([1.0, 2.0])
+
+
+def test_two_poses_of_one_name_are_refused() -> None:
+    named = [{"name": name, "base_T_flange": POSE, "camera_T_board": POSE} for name in ("a", "a")]
+    with pytest.raises(ValueError, match="'a' is given to 2"):
+        HandEyeFile.model_validate({"poses": named})
+    called_by_number = [{**named[0], "name": "pose 2"}, {**named[0], "name": None}]
+    with pytest.raises(ValueError, match="'pose 2' is given to 2"):
+        HandEyeFile.model_validate({"poses": called_by_number})

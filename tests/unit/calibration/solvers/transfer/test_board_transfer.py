@@ -143,6 +143,8 @@ def test_boards_that_cannot_be_fitted() -> None:
         fit_board(four, [*points[:3], extra])
     with pytest.raises(BoardPoseInvalid, match="not on the board: F1"):
         fit_board(DISCS, [*points, BoardPoint("F1", np.zeros(3), np.eye(3))])
+    with pytest.raises(BoardPoseInvalid, match=f"measured twice: {points[0].name}"):
+        fit_board(DISCS, [*points[:3], points[0]])
     wrong = [
         BoardPoint(name, point.position_m, point.covariance_m2)
         for name, point in zip(["P2", "P1", "P5", "P4", "P3"], points, strict=False)

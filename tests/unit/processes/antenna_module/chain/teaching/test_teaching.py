@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.calibration import CalibrationRecordInvalid, WristConfigurationsDiffer
 from cellctl.geometry.pose import pose_from_xyzabc
@@ -14,7 +15,10 @@ from cellctl.processes.antenna_module.chain.schemes import DIFFERENCE
 from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection
 from cellctl.processes.antenna_module.chain.teaching.teaching import TaughtPlug, teach_plug
 from cellctl.processes.antenna_module.faults.calibration import TeachScatter, TooFewTeachings
-from cellctl.processes.antenna_module.faults.plugging import CalibrationsDoNotBelongTogether
+from cellctl.processes.antenna_module.faults.plugging import (
+    CalibrationsDoNotBelongTogether,
+    OutOfTaughtRange,
+)
 from tests.rigs.antenna import exact_cell as exact
 
 SEATED = pose_from_xyzabc([0.03, -0.05, 0.2, 0.1, 0, 0])
@@ -123,3 +127,9 @@ def test_a_damaged_record_is_refused_by_name(key: str, broken: object) -> None:
 def test_every_fault_that_moves_something_invalidates_it() -> None:
     names = {fault.__name__ for fault in PLUG_CORRECTION.invalidated_by}
     assert {"GripperMarksMoved", "FlangeCameraMoved", "ArmMoved"} <= names
+
+
+def test_a_place_that_is_not_a_number_is_out_of_range() -> None:
+    correction = teach(exact.taught_plugs(4, SEATED))
+    with pytest.raises(OutOfTaughtRange):
+        correction.slot_for(RigidTransform.from_translation([np.nan, 0.0, 0.0]))
