@@ -1,6 +1,6 @@
 """Checks every move that the processes of a cell can command against its model."""
 
-from collections.abc import Iterator
+from collections.abc import Hashable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -36,12 +36,11 @@ class CheckedMove:
 
 def stated_moves(cell: CellConfig) -> Iterator[StatedMove]:
     """The moves of all recipes; one that several recipes share is stated once."""
-    seen: set[tuple[str, bytes, bytes]] = set()
+    seen: set[Hashable] = set()
     for recipe in cell.recipes:
         for move in process_definition(recipe.process).moves(cell, recipe):
             # Recipes of one station share most of their moves.
-            key = (move.name, _numbers(move.start), _numbers(move.end))
-            if key not in seen:
+            if (key := _key(move)) not in seen:
                 seen.add(key)
                 yield move
 
@@ -99,6 +98,17 @@ def require_in_bounds(around: Surroundings, move: StatedMove, way_rad: Array) ->
             refusal = around.refusal(at_rad)
             if refusal is not None:
                 raise PlaceUnreachable(f"{move.name}: {refusal}")
+
+
+def _key(move: StatedMove) -> Hashable:
+    """Equal for moves of which one check says all."""
+    # With the other arms: one move may be free past where they stand in one recipe, and not past
+    # where they stand in another.
+    others = frozenset(
+        (robot, frozenset(_numbers(place) for place in places))
+        for robot, places in move.others.items()
+    )
+    return move.name, move.approach, _numbers(move.start), _numbers(move.end), others
 
 
 def _numbers(place: StatedPlace) -> bytes:

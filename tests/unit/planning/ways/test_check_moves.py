@@ -7,6 +7,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.errors.config import BodiesCollide, ClearanceTooSmall, PlaceUnreachable
 from cellctl.planning.scene.solid import Solid
+from cellctl.planning.ways import check_moves
 from cellctl.planning.ways.check_moves import check_move, stated_moves
 from tests.unit.planning.deck_cell import deck_scene
 
@@ -105,3 +106,24 @@ def test_joints_beyond_their_limits_are_refused() -> None:
     checked = check_move(SCENE, StatedMove("main", MoveKind.JOINT, start, end))
     assert isinstance(checked.fault, PlaceUnreachable)
     assert "95.0" in str(checked.fault)
+
+
+def test_a_move_that_other_arms_stand_beside_elsewhere_is_stated_too(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    move = stated("main", "home", "deck_measure")
+    elsewhere = {
+        name: tuple(replace(place, joints_rad=place.joints_rad + 0.1) for place in places)
+        for name, places in move.others.items()
+    }
+    told = [move, replace(move, others=elsewhere), move]
+    recipe = SCENE.cell.recipes[0]
+    cell = SCENE.cell.model_copy(update={"recipes": (recipe,)})
+
+    class Definition:
+        @staticmethod
+        def moves(_cell: object, _recipe: object) -> list[StatedMove]:
+            return told
+
+    monkeypatch.setattr(check_moves, "process_definition", lambda _name: Definition)
+    assert [dict(one.others) for one in stated_moves(cell)] == [dict(move.others), elsewhere]
