@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 
@@ -13,13 +14,19 @@ def write_durably(path: Path, data: bytes) -> None:
     make_folder_durably(path.parent)
     # In the same folder: a rename is atomic only within one file system.
     draft = path.with_name(f"{path.name}.part")
-    with draft.open("wb") as file:
-        file.write(data)
-        file.flush()
-        # Before the rename: without it the new name may reach the disk before the bytes, and a
-        # power cut leaves an empty file under the good name.
-        os.fsync(file.fileno())
-    draft.replace(path)
+    try:
+        with draft.open("wb") as file:
+            file.write(data)
+            file.flush()
+            # Before the rename: without it the new name may reach the disk before the bytes, and a
+            # power cut leaves an empty file under the good name.
+            os.fsync(file.fileno())
+        draft.replace(path)
+    except OSError:
+        # On a full disk every draft that stayed would take room that others need.
+        with suppress(OSError):
+            draft.unlink()
+        raise
     sync_folder(path.parent)
 
 

@@ -71,13 +71,14 @@ class UnfailingStream:
                 self._stream.write(f'{{"event": "log lines lost", "count": {self.lost}}}\n')
                 self.lost = 0
             self._stream.write(text)
-        except OSError:
+        # A stream that somebody has closed raises ``ValueError``.
+        except (OSError, ValueError):
             self.lost += bool(text.strip())
         return len(text)
 
     def flush(self) -> None:
         """What cannot be flushed stays for the next line."""
-        with suppress(OSError):
+        with suppress(OSError, ValueError):
             self._stream.flush()
 
     def isatty(self) -> bool:

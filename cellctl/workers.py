@@ -82,19 +82,23 @@ class VisionWorkers:
         """The same with another patience, in which waiting for a free worker counts."""
         if self._broken:
             raise WorkerDied("the vision workers were ended and not yet replaced")
-        loop = asyncio.get_running_loop()
+        loop, pool = asyncio.get_running_loop(), self._pool
         try:
             with _deaf_children():
-                done = loop.run_in_executor(self._pool.executor, partial(function, *args, **kwargs))
+                done = loop.run_in_executor(pool.executor, partial(function, *args, **kwargs))
             if await _comes(done, patience_s):
                 return done.result()
         except BrokenProcessPool as error:
-            self._broken = True
+            self._is_useless(pool)
             raise WorkerDied("a vision worker ended unexpectedly") from error
         # A process that is suspended or hangs in native code listens to nothing but this.
-        self._broken = True
-        self._pool.kill()
+        self._is_useless(pool)
+        pool.kill()
         raise WorkerSilent(f"no result of {function.__name__} within {patience_s:g} s")
+
+    def _is_useless(self, pool: "_Pool") -> None:
+        # Whoever waited for an earlier pool may learn of its end when new workers are in place.
+        self._broken = self._broken or pool is self._pool
 
     def close(self) -> None:
         """End the workers; work that has not begun is dropped, that which hangs is ended."""

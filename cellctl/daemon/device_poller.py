@@ -17,7 +17,11 @@ class DevicePoller:
 
     async def ask(self) -> None:
         """One round; a head that is away refuses Start, a dead or silent worker aborts."""
-        if not (self._unit.live and self._unit.machine.state in AT_REST):
+        if not self._unit.live:
+            # Clear connects everything anew, so what is away after it is news.
+            self._away.clear()
+            return
+        if self._unit.machine.state not in AT_REST:
             return
         await self._ask_workers()
         await self._cell.ask_silent_devices()

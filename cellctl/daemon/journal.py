@@ -6,7 +6,7 @@ The protocol is systemd's JOURNAL_NATIVE_PROTOCOL: one datagram an entry, ``NAME
 import json
 import os
 import socket
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -71,14 +71,21 @@ def _fields(line: str) -> Iterator[tuple[str, str]]:
     # Whole, so that the journal shows and exports what the log file would have.
     yield "MESSAGE", line
     yield "SYSLOG_IDENTIFIER", "cellctl"
-    try:
-        values: dict[str, Any] = json.loads(line)
-    except ValueError:
-        values = {}  # a traceback of the interpreter, or a library that prints
+    values = _said_in(line)
     yield "PRIORITY", str(_PRIORITIES.get(values.get("level", "info"), 6))
     for name, field in _FIELDS.items():
         if name in values:
             yield field, str(values[name])
+
+
+def _said_in(line: str) -> Mapping[str, Any]:
+    """What a line of JSON says by name; nothing for a traceback, or for what a library prints."""
+    try:
+        found = json.loads(line)
+    except ValueError:
+        return {}
+    # A line with nothing but a number or a list is JSON, too.
+    return found if isinstance(found, dict) else {}
 
 
 def _field(name: str, value: str) -> bytes:

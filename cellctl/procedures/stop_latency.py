@@ -184,7 +184,7 @@ async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
         motion.cancel()
         await asyncio.gather(motion, return_exceptions=True)
     require_full_speed(robot)
-    end_m = float((await _at_rest(robot) - start.translation) @ direction)
+    end_m = float((await at_rest(robot) - start.translation) @ direction)
     # Too near to its target, the arm was braking by itself, and the overrun says nothing about the
     # stop.
     if end_m > TRAVEL_M - speed_m_s * 0.1:
@@ -215,15 +215,19 @@ async def _aborted(motion: asyncio.Task[object]) -> None:
         raise CommissioningFailed("the stopped motion never ended") from error
 
 
-async def _at_rest(robot: Robot) -> Array:
-    """Position once two reports in a row say the same and none of them is of a moving arm."""
+async def at_rest(robot: Robot, timeout_s: float = END_TIMEOUT_S) -> Array:
+    """Position in the base, m, shape (3,), once two reports in a row say the same and none of them
+    is of a moving arm; raises ``CommissioningFailed`` when that does not come."""
     last, position = -1.0, np.full(3, np.nan)
-    async with asyncio.timeout(END_TIMEOUT_S):
-        while True:
-            state = robot.state()
-            if state.time_s > last:
-                here = state.base_T_flange.translation
-                if not state.moving and np.allclose(here, position, atol=1e-7):
-                    return np.asarray(here)
-                last, position = state.time_s, here
-            await asyncio.sleep(POLL_S)
+    try:
+        async with asyncio.timeout(timeout_s):
+            while True:
+                state = robot.state()
+                if state.time_s > last:
+                    here = state.base_T_flange.translation
+                    if not state.moving and np.allclose(here, position, atol=1e-7):
+                        return np.asarray(here)
+                    last, position = state.time_s, here
+                await asyncio.sleep(POLL_S)
+    except TimeoutError as error:
+        raise CommissioningFailed(f"the stopped arm still moves after {timeout_s:g} s") from error

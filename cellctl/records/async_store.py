@@ -95,7 +95,7 @@ class AsyncRunStore:
         task = asyncio.create_task(self._keep_image(run, name, image))
         # The event loop holds only weak references to tasks.
         self._keeping.add(task)
-        task.add_done_callback(self._keeping.discard)
+        task.add_done_callback(self._ended)
 
     async def images_kept(self, timeout_s: float = IMAGES_TIMEOUT_S) -> None:
         """Wait for the images that were given until now; later ones find their run closed."""
@@ -114,6 +114,12 @@ class AsyncRunStore:
         # is missing.
         except RecordsError as error:
             _log.error("raw image not kept", run=run, image=name, fault=str(error))
+
+    def _ended(self, task: asyncio.Task[None]) -> None:
+        self._keeping.discard(task)
+        # Nobody awaits it, so that an error which no fault describes would be seen by nobody.
+        if not task.cancelled() and (error := task.exception()) is not None:
+            _log.error("raw image not kept", exc_info=error)
 
     def close(self) -> None:
         """Finish pending writes and close the store."""

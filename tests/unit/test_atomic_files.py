@@ -34,3 +34,14 @@ def test_a_file_comes_after_its_folders(tmp_path: Path, synced: list[Path]) -> N
     assert synced[-1] == path.parent
     assert set(synced) == {tmp_path, tmp_path / "files", path.parent}
     assert path.read_bytes() == b"data"
+
+
+def test_a_draft_for_which_there_is_no_room_does_not_stay(tmp_path: Path) -> None:
+    path = tmp_path / "record.json"
+    write_durably(path, b"old")
+    draft = tmp_path / "record.json.part"
+    draft.symlink_to("/dev/full")
+    with pytest.raises(OSError, match="No space left"):
+        write_durably(path, b"new")
+    assert not draft.is_symlink()
+    assert path.read_bytes() == b"old"

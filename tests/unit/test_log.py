@@ -78,3 +78,10 @@ def test_a_full_disk_keeps_nobody_from_going_on(monkeypatch: pytest.MonkeyPatch)
     first, second = (json.loads(line) for line in disk.getvalue().splitlines())
     assert first == {"event": "log lines lost", "count": 2}
     assert second["event"] == "again"
+
+
+def test_a_stream_that_was_closed_keeps_nobody_from_logging() -> None:
+    stream = io.StringIO()
+    log.configure(stream=stream)
+    stream.close()
+    log.get("cellctl.guard").warning("stopping")

@@ -110,3 +110,21 @@ async def test_a_worker_is_deaf_to_the_terminal_before_it_runs() -> None:
         assert not {signal.SIGINT, signal.SIGHUP} & blocked(), "the daemon itself listens"
     finally:
         workers.close()
+
+
+async def test_who_learns_late_of_an_earlier_death_does_no_harm_to_the_new_workers() -> None:
+    workers = VisionWorkers(count=1)
+    try:
+        pid = await workers.run(os.getpid)
+        os.kill(pid, signal.SIGSTOP)
+        late = asyncio.create_task(workers.run_within(60.0, os.getpid))
+        await asyncio.sleep(0)
+        with pytest.raises(WorkerSilent):
+            await workers.run_within(0.2, os.getpid)
+        workers.revive()
+        new = await workers.run(os.getpid)
+        with pytest.raises(WorkerDied):
+            await late
+        assert await workers.run(os.getpid) == new
+    finally:
+        workers.close()

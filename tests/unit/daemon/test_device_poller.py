@@ -2,7 +2,11 @@
 
 import asyncio
 
+import pytest
+
 from cellctl.daemon.device_poller import DevicePoller
+from cellctl.errors import CellError
+from cellctl.errors.link import DeviceAway
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
@@ -57,3 +61,25 @@ async def test_nobody_is_asked_in_a_run_or_before_all_are_connected(rig: DaemonR
     assert rig.unit.machine.state is State.EXECUTE
     rig.contact.may_end.set()
     await rig.to(State.COMPLETED)
+
+
+async def test_what_is_away_is_told_anew_after_a_clear(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await rig.idle()
+    told: list[CellError] = []
+
+    async def note(fault: CellError) -> None:
+        told.append(fault)
+
+    monkeypatch.setattr(rig.unit.machine, "fail", note)
+    polled = poller(rig)
+    await rig.bench.cell.head_2.camera.disconnect()
+    await polled.ask()
+    await polled.ask()
+    assert [type(fault) for fault in told] == [DeviceAway]
+    rig.bench.cell.connected = False
+    await polled.ask()
+    rig.bench.cell.connected = True
+    await polled.ask()
+    assert [type(fault) for fault in told] == [DeviceAway, DeviceAway]

@@ -114,3 +114,11 @@ def test_a_stream_that_systemd_does_not_read_stays(
         assert journal_or(other, journal.path) is other
     monkeypatch.delenv("JOURNAL_STREAM")
     assert journal_or(stderr, journal.path) is stderr
+
+
+@pytest.mark.parametrize("line", ["3.14", "[1, 2]", "null"])
+def test_json_that_is_no_object_arrives_whole(
+    journal: Journal, stream: JournalStream, line: str
+) -> None:
+    stream.write(f"{line}\n")
+    assert journal.entry()["MESSAGE"] == line

@@ -13,6 +13,7 @@ from cellctl.interfaces import RobotState
 from cellctl.procedures.payload import STEADY_N, still_wrench
 from cellctl.procedures.stop_latency import (
     StopLatency,
+    at_rest,
     measure_stop_latency,
     stored_stop_latencies,
 )
@@ -142,3 +143,19 @@ def test_stored_results_are_told_from_other_calibrations(tmp_path: Path) -> None
     assert stored_stop_latencies(tmp_path) == ()
     (tmp_path / "stop_latency.json").write_text(text)
     assert stored_stop_latencies(tmp_path) == (stored,)
+
+
+def test_an_arm_that_never_comes_to_rest_is_a_fault() -> None:
+    cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=0.05)
+    state = cell.robot.state
+
+    def moving(max_age_s: float = 0.25) -> RobotState:
+        return replace(state(max_age_s), moving=True)
+
+    cell.robot.state = moving  # type: ignore[method-assign]
+
+    async def run() -> None:
+        with pytest.raises(CommissioningFailed, match="still moves after 1 s"):
+            await at_rest(cell.robot, timeout_s=1.0)
+
+    run_simulated(cell.start_s, cell.advance, run)

@@ -5,6 +5,7 @@ import threading
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from cellctl.errors.records import RecordNotWritten, StoreUnavailable, ValueRefused
@@ -60,3 +61,13 @@ def test_a_store_that_cannot_be_opened_is_a_fault(tmp_path: Path) -> None:
     (tmp_path / "store.sqlite").mkdir()
     with pytest.raises(StoreUnavailable):
         AsyncRunStore(tmp_path)
+
+
+async def test_an_image_that_cannot_be_coded_is_told(
+    archive: AsyncRunStore, capsys: pytest.CaptureFixture[str]
+) -> None:
+    colour = np.zeros((4, 4, 3), np.uint8)
+    archive.keep_image(1, "raw/look.pgm.zst", colour)
+    await archive.images_kept()
+    await asyncio.sleep(0)
+    assert "raw image not kept" in "".join(capsys.readouterr())
