@@ -68,7 +68,6 @@ def spoken(text: str, language: str) -> str:
     Also where one fault is told in the facts of another. A fault in other words than today's, as an
     old record may have them, stays as it is.
     """
-
     head = None if language == ENGLISH else _NUMBERED.search(text)
     if head is None:
         return text

@@ -4,6 +4,7 @@ Fields have the names of the columns in ``schema.py``. ``time`` is UTC; ``phase`
 ``Phase`` and is filled in by the store with the phase that the run is in.
 """
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -139,8 +140,14 @@ class LoopPass:
 
     @property
     def worst_ratio(self) -> float:
-        """The greatest error as a share of its limit."""
-        return max(abs(c.value or 0.0) / (c.limit or 1.0) for c in self.components)
+        """The greatest error as a share of its limit; NaN where an error is unknown.
+
+        Components without a limit do not count; 0 where none has one.
+        """
+        limited = [(c.value, c.limit) for c in self.components if c.limit]
+        if any(value is None for value, _ in limited):
+            return math.nan
+        return max((abs(value or 0.0) / limit for value, limit in limited), default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -288,7 +295,8 @@ class RunRecord:
         return None if found is None else found.value
 
     def document(self, key: str) -> Mapping[str, Any]:
-        """All documents of a key as one, later entries first; empty when there is none."""
+        """All documents of a key as one, in which a later entry replaces an earlier one of the same
+        name; empty when there is none."""
         merged: dict[str, Any] = {}
         for entry in self.documents:
             if entry.key == key:

@@ -107,7 +107,7 @@ def _spoilt(connection: sqlite3.Connection, runs: Iterable[int]) -> Iterator[int
 
 
 def _holes(connection: sqlite3.Connection, run: int) -> Mapping[str, Any]:
-    """All documents of the run that name its holes, as one; later ones first."""
+    """All documents of the run that name its holes, as one; later entries replace earlier ones."""
     query = "SELECT content FROM documents WHERE run = ? AND key = ? ORDER BY id"
     holes: dict[str, Any] = {}
     for row in connection.execute(query, (run, GAUGE_HOLES)):

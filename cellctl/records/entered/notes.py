@@ -3,14 +3,13 @@
 They are entries of the audit log, which seals each of them, and may come after the run was closed.
 """
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from cellctl.errors.records import ValueRefused
 from cellctl.records.entered.said_by import BY
-from cellctl.records.entries import AuditEntry
+from cellctl.records.entries import AuditEntry, Verdict
 from cellctl.records.figures import Limit
 
 if TYPE_CHECKING:
@@ -74,8 +73,7 @@ def add_note(
     by_key = {one.key: one for one in SURROUNDINGS}
     for key, value in values.items():
         limit, unit = by_key[key].plausible, by_key[key].unit
-        # Written so that a value that is not a number is refused.
-        if not (math.isfinite(value) and (limit.lower or 0.0) <= value <= (limit.upper or 0.0)):
+        if limit.judge(value) is not Verdict.PASS:
             allowed = f"allowed {limit.lower:g} to {limit.upper:g}"
             raise ValueRefused(f"{by_key[key].label} {value:g} {unit}, {allowed}")
     store.run(run)

@@ -1,5 +1,6 @@
 """A process that the store has never heard of records its run."""
 
+import math
 from collections.abc import AsyncIterator
 from pathlib import Path
 
@@ -100,3 +101,11 @@ async def test_a_closed_run_takes_nothing_more(recorder: RunRecorder) -> None:
         await recorder.figure("depth", 1.0, "mm")
     with pytest.raises(RunClosed):
         await recorder.phase(10, "again")
+
+
+def test_an_error_that_is_unknown_is_no_share_of_its_limit() -> None:
+    known = PassComponent("x", "mm", -0.4, None, 0.5)
+    free = PassComponent("z", "mm", 7.0, None, None)
+    unknown = PassComponent("y", "mm", None, None, 0.5)
+    assert LoopPass("loop", 1, (known, free), converged=True).worst_ratio == pytest.approx(0.8)
+    assert math.isnan(LoopPass("loop", 1, (known, unknown), converged=False).worst_ratio)
