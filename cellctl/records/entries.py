@@ -140,14 +140,10 @@ class LoopPass:
 
     @property
     def worst_ratio(self) -> float:
-        """The greatest error as a share of its limit; NaN where an error is unknown.
-
-        Components without a limit do not count; 0 where none has one.
-        """
+        """The greatest error as a share of its limit, where there is one; NaN for unknown ones."""
         limited = [(c.value, c.limit) for c in self.components if c.limit]
-        if any(value is None for value, _ in limited):
-            return math.nan
-        return max((abs(value or 0.0) / limit for value, limit in limited), default=0.0)
+        shares = [math.nan if value is None else abs(value) / limit for value, limit in limited]
+        return max(shares, key=lambda share: (math.isnan(share), share), default=0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -295,8 +291,7 @@ class RunRecord:
         return None if found is None else found.value
 
     def document(self, key: str) -> Mapping[str, Any]:
-        """All documents of a key as one, in which a later entry replaces an earlier one of the same
-        name; empty when there is none."""
+        """All documents of a key as one, empty for none; of equal names the latest one counts."""
         merged: dict[str, Any] = {}
         for entry in self.documents:
             if entry.key == key:
