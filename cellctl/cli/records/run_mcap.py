@@ -34,7 +34,7 @@ def write_mcap(store: "RunStore", run: int, out: Path | None, images: Images) ->
     exported = export_mcap(store, run, path, ImageForm(images.value))
     layout = path.with_suffix(LAYOUT)
     try:
-        write_durably(layout, layout_for(exported.messages).encode())
+        write_durably(layout, layout_for(exported.messages, exported.frames).encode())
     except OSError as error:
         raise RecordNotWritten(f"{layout}: {error.strerror}") from error
     for text in exported.missing:

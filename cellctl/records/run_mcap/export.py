@@ -33,6 +33,8 @@ class ExportedRun:
     path: Path
     messages: Mapping[str, int]
     """Number of messages, by topic."""
+    frames: frozenset[str]
+    """Of the tree of transforms."""
     missing: tuple[str, ...]
     """Empty when all that the record names is in the file."""
 
@@ -65,7 +67,7 @@ def export_mcap(
         with suppress(OSError):
             part.unlink()
         raise RecordNotWritten(f"{path}: {error.strerror}") from error
-    return ExportedRun(path, dict(writer.written), tuple(sources.missing))
+    return ExportedRun(path, dict(writer.written), frozenset(writer.frames), tuple(sources.missing))
 
 
 def _write(writer: RunFileWriter, sources: RunSources, form: ImageForm) -> None:

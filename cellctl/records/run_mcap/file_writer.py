@@ -5,6 +5,7 @@ from collections import Counter
 from datetime import datetime
 from typing import IO
 
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from google.protobuf.message import Message
 from mcap.writer import CompressionType, Writer
 from mcap_protobuf.schema import register_schema
@@ -26,12 +27,17 @@ class RunFileWriter:
         self._schemas: dict[str, int] = {}
         self.written: Counter[str] = Counter()
         """Messages by topic."""
+        self.frames: set[str] = set()
+        """Of all transforms."""
 
     def add(self, message: TimedMessage) -> None:
         """Messages come in the order of their times."""
         content = message.content() if callable(message.content) else message.content
         if content is None:
             return
+        if isinstance(content, FrameTransforms):
+            for one in content.transforms:
+                self.frames |= {one.parent_frame_id, one.child_frame_id}
         if message.topic not in self._channels:
             self._channels[message.topic] = self._channel(message.topic, content)
         self._writer.add_message(

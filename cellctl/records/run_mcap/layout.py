@@ -4,7 +4,7 @@ The form is that of layouts that are exported as files, which Foxglove and Licht
 """
 
 import json
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import Any
 
 Panel = tuple[str, dict[str, Any]]
@@ -12,12 +12,13 @@ Panel = tuple[str, dict[str, Any]]
 _WRENCH = ("fx_n", "fy_n", "fz_n")
 _MOST_IMAGES = 4
 """Panels of images beside each other: what fits a screen, and both sides of two heads."""
+BASE = "base"
 
 
-def layout_for(topics: Iterable[str]) -> str:
-    """The layout as JSON; names no topic that the run does not have."""
+def layout_for(topics: Iterable[str], frames: Collection[str]) -> str:
+    """The layout as JSON; names no topic and no frame that the run does not have."""
     known = sorted(topics)
-    left = [*_images(known), _scene(known)]
+    left = [*_images(known), _scene(known, frames)]
     right = [*_plots(known), _states(known), _log()]
     panels = [*left, *right]
     document = {
@@ -42,15 +43,21 @@ def _images(topics: list[str]) -> list[Panel]:
     return found
 
 
-def _scene(topics: list[str]) -> Panel:
+def _scene(topics: list[str], frames: Collection[str]) -> Panel:
     shown = [one for one in topics if one.startswith("/poses/") or one.endswith("/target")]
     settings = {
         "topics": {topic: {"visible": True} for topic in shown},
-        "followTf": "base",
+        **_followed(frames),
         "scene": {"transforms": {"axisScale": 0.3}},
         "layers": {},
     }
     return "3D!scene", settings
+
+
+def _followed(frames: Collection[str]) -> dict[str, str]:
+    """The base of the robot that a process works with; a run that names none has those of all."""
+    bases = [BASE] if BASE in frames else sorted(one for one in frames if one.endswith(f"/{BASE}"))
+    return {"followTf": bases[0]} if bases else {}
 
 
 def _plots(topics: list[str]) -> list[Panel]:

@@ -51,11 +51,11 @@ def test_a_good_part_with_images_of_frame_servers(own: OwnCell) -> None:
 def _recording_fits_its_layout(out: Path) -> None:
     opened = RunStore(out / "store", create=False)
     try:
-        content = read(export_mcap(opened, 1, out / "run.mcap", ImageForm.JPEG).path)
+        found = export_mcap(opened, 1, out / "run.mcap", ImageForm.JPEG)
     finally:
         opened.close()
-    layout = json.loads(layout_for(content.schemas))
-    assert misfits(layout, content) == []
+    layout = json.loads(layout_for(found.messages, found.frames))
+    assert misfits(layout, read(found.path)) == []
     kinds = Counter(name.partition("!")[0] for name in layout["configById"])
     assert kinds["Image"] == 4
     assert kinds["Plot"] >= 3

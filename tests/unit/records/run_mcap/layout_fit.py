@@ -71,8 +71,8 @@ def _scene(settings: dict[str, Any], content: Content) -> Iterator[str]:
         for one in message.transforms
         for frame in (one.parent_frame_id, one.child_frame_id)
     }
-    if settings["followTf"] not in frames:
-        yield f"no frame {settings['followTf']}"
+    if frames and settings.get("followTf") not in frames:
+        yield f"no frame {settings.get('followTf')}"
     for topic in settings["topics"]:
         if content.schemas.get(topic) not in PLACED:
             yield f"{topic} has no place in 3D"

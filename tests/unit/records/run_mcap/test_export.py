@@ -252,11 +252,12 @@ def test_the_page_lists_every_topic_with_its_schema(exported: Exported) -> None:
 def test_the_layout_fits_what_the_run_has(
     exported: Exported, tmp_path: Path, form: ImageForm
 ) -> None:
-    content = exported.content
+    found, content = exported.found, exported.content
     if form is not ImageForm.LOSSLESS:
         number = exported.record.head.number
-        content = read(export_mcap(exported.store, number, tmp_path / "run.mcap", form).path)
-    layout = json.loads(layout_for(content.schemas))
+        found = export_mcap(exported.store, number, tmp_path / "run.mcap", form)
+        content = read(found.path)
+    layout = json.loads(layout_for(found.messages, found.frames))
     assert misfits(layout, content) == []
     named = set(layout["configById"])
     pictured = set() if form is ImageForm.NONE else {f"Image!{VIEW}"}
@@ -279,11 +280,18 @@ def test_the_layout_fits_what_the_run_has(
 def test_a_layout_that_does_not_fit_is_noticed(
     exported: Exported, old: str, new: str, problem: str
 ) -> None:
-    text = layout_for(exported.content.schemas)
+    text = layout_for(exported.found.messages, exported.found.frames)
     assert old in text
     assert problem in " ".join(misfits(json.loads(text.replace(old, new)), exported.content))
 
 
 def test_a_layout_of_a_run_without_images_has_no_image_panels() -> None:
-    layout = json.loads(layout_for(["/log", "/unit/state"]))
+    layout = json.loads(layout_for(["/log", "/unit/state"], ()))
     assert set(layout["configById"]) == {"3D!scene", "StateTransitions!states", "RosOut!log"}
+
+
+def test_a_run_that_names_no_robot_is_looked_at_from_the_first_of_all() -> None:
+    frames = ("main/flange", "main/base", "aux_1/base")
+    layout = json.loads(layout_for(["/log"], frames))
+    assert layout["configById"]["3D!scene"]["followTf"] == "aux_1/base"
+    assert "followTf" not in json.loads(layout_for(["/log"], ()))["configById"]["3D!scene"]
