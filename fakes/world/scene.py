@@ -74,6 +74,8 @@ class SceneHole:
     depth_m: float
     """Depth of the visible wall."""
     through: bool
+    thread_begins_rad: float = 0.0
+    """Azimuth in the part at which the first turn of a thread comes up."""
 
 
 @dataclass(frozen=True, slots=True)

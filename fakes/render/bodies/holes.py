@@ -132,7 +132,7 @@ def _thread(
     The thread is a helix of crests that fades in behind the chamfer, as a tap leaves it.
     """
     angle = np.arctan2(rays.y, rays.x)
-    turn = (angle + np.pi) / (2 * np.pi)
+    turn = np.mod((angle - hole.thread_begins_rad + np.pi) / (2 * np.pi), 1.0)
     lit = 0.75 - 0.25 * np.cos(angle - azimuth)
     root_m = hole.diameter_m / 2
     for number in range(_TURNS):

@@ -1,7 +1,7 @@
 """One pair of frame and deck: how the operator loads them, and how they were really made."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -38,6 +38,9 @@ def draw_parts(scenario: DeckScenario, seed: int, number: int) -> PartsTruth:
     rng = stream(seed, "parts", number)
     low, high = np.log(scenario.contact.stiffness_n_m)
     thickness_spread = parts.deck_thickness_spread_mm
+    # A tap takes hold anywhere. Turns that all began at one azimuth would draw all images of
+    # threads to one side, and a part measured through them with it.
+    tapped = stream(seed, "threads", number).uniform(-np.pi, np.pi, len(parts.holes)).tolist()
     return PartsTruth(
         number=number,
         cell_T_frame=from_written(parts.frame_mm_deg) * drawn_spread(rng, parts.frame_displacement),
@@ -47,7 +50,10 @@ def draw_parts(scenario: DeckScenario, seed: int, number: int) -> PartsTruth:
         )
         * MM,
         contact_stiffness_n_m=float(np.exp(rng.uniform(low, high))),
-        frame_holes=tuple(_frame_hole(parts, hole, rng) for hole in parts.holes),
+        frame_holes=tuple(
+            replace(_frame_hole(parts, hole, rng), thread_begins_rad=thread_begins_rad)
+            for hole, thread_begins_rad in zip(parts.holes, tapped, strict=True)
+        ),
         deck_holes=tuple(_deck_hole(parts, hole, rng) for hole in parts.holes),
         frame_seed=stream_seed(seed, "frame texture", number),
         deck_seed=stream_seed(seed, "deck texture", number),
