@@ -9,7 +9,11 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+from scipy.spatial.transform import RigidTransform
+
 from cellctl.errors.config import FileInvalid
+from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
 
 _LEAST_MM = 20.0
 """When every coordinate of a file is smaller, it was written in metres: no arm works within 20 mm
@@ -35,6 +39,12 @@ def require_usual_units(file: str, content: object) -> None:
     for key, largest in joints.items():
         if 0.0 < largest <= _LARGEST_RAD:
             raise FileInvalid(f"{file}: {key}: degrees belong here; these look like radians")
+
+
+def meant_in_radians(pose: RigidTransform) -> RigidTransform:
+    """The pose whose angles were written in radians and read as degrees."""
+    written = pose_to_xyzabc(pose)
+    return pose_from_xyzabc([*written[:3], *np.degrees(written[3:])])
 
 
 def _vectors(content: object, key: str) -> Iterator[tuple[str, Sequence[float]]]:

@@ -16,7 +16,10 @@ MM = 1e-3
 
 
 def pose_from_xyzabc(xyz_mm_abc_deg: ArrayLike) -> RigidTransform:
-    """Pose from its written form, shape (6,): X, Y, Z in mm, A, B, C in degrees."""
+    """Pose from its written form, shape (6,): X, Y, Z in mm, A, B, C in degrees.
+
+    Raises ``ValueError`` for anything but six finite numbers.
+    """
     values = np.asarray(xyz_mm_abc_deg, dtype=float)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise ValueError(f"a pose is six finite numbers, got {xyz_mm_abc_deg!r}")

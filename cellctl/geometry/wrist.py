@@ -7,6 +7,7 @@ from cellctl.geometry.pose import Array
 WRIST_JOINTS = (2, 4)
 """Elbow (A3) and wrist (A5). Their signs tell the ways apart in which an arm reaches one pose."""
 _STRAIGHT_RAD = float(np.radians(1.0))
+"""Nearer to straight, the sign of a joint does not tell to which side the arm will fold."""
 
 
 def wrist_configuration(joints_rad: Array) -> tuple[int, ...]:

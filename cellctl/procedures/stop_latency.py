@@ -24,8 +24,11 @@ from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
 SPEEDS_M_S = (2e-3, 4e-3, 6e-3, 8e-3)
+"""Speeds of contact, evenly: the latency is the slope of overrun against speed."""
 REPEATS = 3
 TRAVEL_M = 0.03
+"""Way of one motion: three times as far as the arm goes at 8 mm/s before it is told to stop. Its
+own braking before the target must not pass for the stop."""
 RUN_S = 1.0
 """Time on the way before the stop is requested: the speed is constant by then."""
 ACCELERATION_M_S2 = 0.05

@@ -9,10 +9,15 @@ from cellctl.geometry.arm.chain import ArmChain, flange_jacobian
 from cellctl.geometry.pose import Array
 
 _ROUNDS = 60
+"""Half a turn of a joint takes eleven of the longest steps, and near the target each step squares
+what is left of the error: what has not been reached by then is out of reach."""
 _CLOSE = 1e-9
 """Distance from the target, in m and rad, at which it counts as reached."""
 _DAMPED = 1e-4**2 * np.eye(6)
+"""Keeps steps finite at a singular pose. Elsewhere the singular values of the Jacobian are hundreds
+of times as large, and it is not felt."""
 _GREATEST_STEP_RAD = 0.3
+"""A longer step leaves the range in which the Jacobian holds, and may lead to another fold."""
 
 
 def joints_reaching(chain: ArmChain, base_T_flange: Array, near_rad: Array) -> Array | None:

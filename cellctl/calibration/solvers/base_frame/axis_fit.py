@@ -93,7 +93,7 @@ def fit_axis(stops: Sequence[AxisStop], joint: int, sign: int, noise: ArmNoise) 
     angles = sign * _joint_angles(stops, joint)
     data = _observations(stops, angles)
     direction, middle, positions = _start(data)
-    basis = _perpendicular(direction)
+    basis = perpendicular(direction)
     whitening = _whitening(data, direction, middle, noise)
 
     def axis(parameters: Array) -> tuple[Array, Array]:
@@ -209,7 +209,7 @@ def _whitening(
     return factors
 
 
-def _perpendicular(direction: Array) -> Array:
+def perpendicular(direction: Array) -> Array:
     """Two unit vectors across ``direction``, shape (2, 3)."""
     least = np.eye(3)[int(np.argmin(np.abs(direction)))]
     first = skew(direction) @ least

@@ -4,10 +4,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
-from cellctl.calibration.solvers.base_frame.axis_fit import AxisFit
+from cellctl.calibration.solvers.base_frame.axis_fit import AxisFit, perpendicular
 from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.geometry.pose import MM
-from cellctl.geometry.uncertain import skew
 from cellctl.plot_style import INK, style
 
 
@@ -27,9 +26,7 @@ def base_frame_picture(result: BaseFrameResult) -> bytes:
 
 
 def _circles(axes: Axes, fit: AxisFit) -> None:
-    across = skew(fit.direction) @ np.eye(3)[int(np.argmin(np.abs(fit.direction)))]
-    first = across / np.linalg.norm(across)
-    second = np.cross(fit.direction, first)
+    first, second = perpendicular(fit.direction)
     relative = (fit.points_m - fit.point_m) / MM
     turn = np.linspace(0, 2 * np.pi, 200)
     for target, radius_m in zip(fit.targets, fit.radii_m, strict=True):

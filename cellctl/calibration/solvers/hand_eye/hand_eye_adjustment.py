@@ -18,7 +18,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, RobotNoise, Setup
 from cellctl.errors.calibration import IllConditioned, SolveFailed
 from cellctl.geometry.pose import Array
-from cellctl.geometry.uncertain import inverse_jacobian, perturbed
+from cellctl.geometry.uncertain import inverse_jacobian, perturbed, skews
 
 _SCALE_SIGMA = 1.0
 """Standard deviation of the logarithm of each scale: what is stated is good to a factor of e."""
@@ -36,7 +36,6 @@ _SETTLED = 1e-7
 """Largest step that is left, in standard deviations of what is solved for."""
 _MAX_CONDITION = 1e12
 """Condition number beyond which no digit of the covariance is right."""
-
 
 Steps = tuple[int, ...]
 """Logarithms of the scales of robot positions, robot angles and camera, in steps."""
@@ -157,7 +156,7 @@ def _linearised(
     # errors of position and angle would not mix as they do.
     if setup is Setup.EYE_IN_HAND:
         turned = _by_second(back)
-        turned[:, :3, 3:] = turned[:, :3, :3] @ _skews(turn.translation)
+        turned[:, :3, 3:] = turned[:, :3, :3] @ skews(turn.translation)
         by_turn = by_turn @ -turned
     position, rotation = by_turn[:, :, :3], by_turn[:, :, 3:]
     parts = (
@@ -174,7 +173,7 @@ def _by_first(first: RigidTransform, second: RigidTransform) -> Array:
     once."""
     arms = np.atleast_2d((first * second).translation - first.translation)
     jacobians = np.tile(np.eye(6), (len(arms), 1, 1))
-    jacobians[:, :3, 3:] = -_skews(arms)
+    jacobians[:, :3, 3:] = -skews(arms)
     return jacobians
 
 
@@ -185,11 +184,6 @@ def _by_second(first: RigidTransform) -> Array:
     jacobians = np.zeros((len(rotations), 6, 6))
     jacobians[:, :3, :3] = jacobians[:, 3:, 3:] = rotations
     return jacobians
-
-
-def _skews(vectors: Array) -> Array:
-    """Matrices of the cross products, shape (n, 3, 3)."""
-    return np.asarray(np.cross(np.eye(3)[None], vectors[:, None, :]))
 
 
 def _step(here: _Linearised, weights: Array) -> tuple[Array, Array]:

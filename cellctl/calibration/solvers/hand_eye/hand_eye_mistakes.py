@@ -15,8 +15,9 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.checks import LimitCheck
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Setup
 from cellctl.calibration.solvers.hand_eye.hand_eye_start import closed_form
+from cellctl.calibration.unit_slips import meant_in_radians
 from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
-from cellctl.geometry.pose import MM, pose_error, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.pose import MM, pose_error
 
 _FITS = 0.01
 """Scatter of the board's place, as a share of its distance, below which it belongs to these poses,
@@ -26,6 +27,8 @@ _SCALE = 0.01
 _BETTER = 10.0
 """A correction is told when the poses fit so many times better with it than as given."""
 _TURNED_RAD = np.radians(2)
+"""A pose fits within this once its board is turned by 180°: far more than robot and camera scatter,
+and far less than any other error of a whole pose leaves."""
 
 Change = Callable[[RigidTransform], RigidTransform]
 
@@ -42,12 +45,6 @@ def _scaled(factor: float) -> Change:
     return lambda pose: RigidTransform.from_components(pose.translation * factor, pose.rotation)
 
 
-def _from_radians(pose: RigidTransform) -> RigidTransform:
-    """The pose whose angles were written in radians and read as degrees."""
-    written = pose_to_xyzabc(pose)
-    return pose_from_xyzabc([*written[:3], *np.degrees(written[3:])])
-
-
 _MISTAKES = (
     _Mistake(
         "the data fit {other}, or the poses of the robot are inverted (flange_T_base)",
@@ -56,8 +53,8 @@ _MISTAKES = (
     _Mistake("the poses of the board are inverted (board_T_camera)", board=lambda p: p.inv()),
     _Mistake("the robot's lengths are in metres", flange=_scaled(1e3)),
     _Mistake("the board's lengths are in metres", board=_scaled(1e3)),
-    _Mistake("the robot's angles are in radians", flange=_from_radians),
-    _Mistake("the board's angles are in radians", board=_from_radians),
+    _Mistake("the robot's angles are in radians", flange=meant_in_radians),
+    _Mistake("the board's angles are in radians", board=meant_in_radians),
 )
 
 

@@ -17,10 +17,15 @@ from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import Array
 
 MIN_POSES = 4
+"""Three poses that turn about two directions determine camera and board; the fourth shows whether
+they belong together."""
 _MIN_TURN_RAD, _MAX_TURN_RAD = np.radians(3), np.radians(170)
 """Small turns have an uncertain axis; at half a turn the sign of the axis is arbitrary."""
 _MIN_SPREAD_RAD = np.radians(5)
+"""Rms turn of the flange in the second direction. Turns about one direction leave the place of the
+camera along it open, and little more than that multiplies the errors of the poses."""
 _MAX_ANGLE_DIFFERENCE_RAD = np.radians(1)
+"""Robot and camera know an angle to hundredths of a degree: more than this is another motion."""
 
 
 def closed_form(

@@ -6,8 +6,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.solvers.tool.tool import TIP_FROM_FLANGE, ToolResult, calibrate_tool
+from cellctl.calibration.unit_slips import meant_in_radians
 from cellctl.errors import CellError
-from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.pose import MM
 
 _LEAST_WITHOUT = 5
 """Touches of which one may be left out: four are needed, and four may fit by luck."""
@@ -42,7 +43,7 @@ def tool_mistakes(
 
 
 def _explanation(touching: Sequence[RigidTransform]) -> str:
-    if _passes([_from_radians(pose) for pose in touching]):
+    if _passes([meant_in_radians(pose) for pose in touching]):
         return "the angles of the poses are in radians? Then the touches meet in one point"
     if len(touching) >= _LEAST_WITHOUT:
         alone = [
@@ -60,9 +61,3 @@ def _passes(touching: Sequence[RigidTransform]) -> bool:
         return calibrate_tool(touching).passed
     except CellError:
         return False
-
-
-def _from_radians(pose: RigidTransform) -> RigidTransform:
-    """The pose whose angles were written in radians and read as degrees."""
-    written = pose_to_xyzabc(pose)
-    return pose_from_xyzabc([*written[:3], *np.degrees(written[3:])])
