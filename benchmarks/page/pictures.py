@@ -66,7 +66,9 @@ def main(
             own.daemon().ready()
             url = str(own.page().ready()["url"])
             with chromium() as browser:
-                context = browser.new_context(locale="en-GB", timezone_id="Europe/Berlin")
+                context = browser.new_context(
+                    locale="en-GB", timezone_id="Europe/Berlin", reduced_motion="reduce"
+                )
                 person = Person(context.new_page(), url, own.pin)
                 _through(own, Camera(person, out, sizes, languages, names))
         finally:
