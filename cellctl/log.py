@@ -15,7 +15,8 @@ from structlog.typing import EventDict, Processor, WrappedLogger
 
 from cellctl.log_thread import LogThread
 
-QUIET_LOGGERS = ("pymodbus.logging", "asyncio", "can", "transitions.core", "transitions")
+QUIET_LOGGERS = ("pymodbus.logging", "can", "transitions.core", "transitions")
+"""Of libraries whose errors reach the log by the exceptions that they raise."""
 
 
 class LogLevel(StrEnum):
@@ -97,6 +98,10 @@ def configure(
     """
     for name in QUIET_LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL)
+    # Its errors are what nobody else tells of: a task that failed and was held by nobody, a
+    # callback that raised. Its warnings are noise, such as each write to a link that is known to be
+    # lost.
+    logging.getLogger("asyncio").setLevel(logging.ERROR)
     unfailing = UnfailingStream(sys.stderr if stream is None else stream)
     lines = cast(TextIO, _by_thread(unfailing) if beside else unfailing)
     before: list[Processor] = [

@@ -71,8 +71,8 @@ class VisionWorkers:
     async def run(self, function: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
         """Run a pure function in a worker; its exceptions come back unchanged.
 
-        Raises ``WorkerDied`` when a worker has died meanwhile or before, ``WorkerSilent`` when the
-        result has not come within ``PATIENCE_S``.
+        Raises ``WorkerDied`` when a worker has died meanwhile or before, or cannot be started,
+        ``WorkerSilent`` when the result has not come within ``PATIENCE_S``.
         """
         return await self.run_within(PATIENCE_S, function, *args, **kwargs)
 
@@ -84,8 +84,13 @@ class VisionWorkers:
             raise WorkerDied("the vision workers were ended and not yet replaced")
         loop, pool = asyncio.get_running_loop(), self._pool
         try:
-            with _deaf_children():
-                done = loop.run_in_executor(pool.executor, partial(function, *args, **kwargs))
+            try:
+                with _deaf_children():
+                    done = loop.run_in_executor(pool.executor, partial(function, *args, **kwargs))
+            except OSError as error:
+                # The executor keeps the work, and would do it for nobody with the next worker.
+                self._is_useless(pool)
+                raise WorkerDied(f"a vision worker cannot be started: {error}") from error
             if await _comes(done, patience_s):
                 return done.result()
         except BrokenProcessPool as error:
@@ -110,8 +115,7 @@ class _Pool:
 
     def __init__(self, count: int) -> None:
         # Spawned: ``fork`` would copy the daemon with its locks, sockets and event loop.
-        context = _NotingContext()
-        self._processes = context.processes
+        self._context = context = _NotingContext()
         self.executor = ProcessPoolExecutor(
             max_workers=count, mp_context=context, initializer=_initialise
         )
@@ -120,9 +124,10 @@ class _Pool:
         """End the processes, whatever they do; who waits for them gets ``BrokenProcessPool``."""
         # No `shutdown` of the executor here: since Python 3.13 it waits for a lock that the
         # executor holds while it waits for the very processes that hang.
-        for process in self._processes:
+        processes = self._context.started
+        for process in processes:
             process.kill()
-        for process in self._processes:
+        for process in processes:
             # A killed process lasts for moments, a suspended one too. One that the kernel does not
             # let go, in a call to a dead disk, is left behind: the event loop must not wait for it.
             process.join(JOIN_S)
@@ -131,7 +136,7 @@ class _Pool:
         """Let them end what they have begun, for so long altogether."""
         self.executor.shutdown(wait=False, cancel_futures=True)
         give_up_s = now_s() + patience_s
-        running = [process.sentinel for process in self._processes]
+        running = [process.sentinel for process in self._context.started]
         while running and now_s() < give_up_s:
             ended = connection.wait(running, give_up_s - now_s())
             running = [sentinel for sentinel in running if sentinel not in ended]
@@ -143,11 +148,16 @@ class _NotingContext(SpawnContext):
 
     def __init__(self) -> None:
         super().__init__()
-        self.processes: list[SpawnProcess] = []
+        self._processes: list[SpawnProcess] = []
+
+    @property
+    def started(self) -> list[SpawnProcess]:
+        """Without those whose start has failed: there is nothing to end or to wait for."""
+        return [process for process in self._processes if process.pid is not None]
 
     def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # type: ignore[override]
         process = SpawnProcess(*args, **kwargs)
-        self.processes.append(process)
+        self._processes.append(process)
         return process
 
 

@@ -1,5 +1,7 @@
 """Calibrate a stereo head on the chessboard, from many views of its robot (paper 2.1.1)."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -8,6 +10,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.stereo_station import StereoStation
+from cellctl.errors.base import CellError
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM
 from cellctl.procedures.calibration_poses import stereo_views
@@ -31,7 +34,8 @@ async def calibrate_head(
 ) -> ProcedureOutcome:
     """Swing the head about the board, find its corners in every pair, solve, and drive back.
 
-    Begins at the pose from which the head sees the board; nothing may stand in its way.
+    Begins at the pose from which the head sees the board; nothing may stand in its way. After a
+    fault the head stays where it is, as any arm does, and the fault says where that is.
     """
     # What computes is loaded when it is used: checks of a cell file load this module for its moves.
     from cellctl.calibration.boards.board_images import BoardImages, detect_view
@@ -44,13 +48,14 @@ async def calibrate_head(
     image_size = (0, 0)
     for number, base_T_flange in enumerate(poses, start=1):
         await context.progress(number, len(poses), f"{station.name}: view")
-        await _move(station, base_T_flange)
-        pair = await station.camera.grab()
-        # In the order of OpenCV, width first; arrays have the height first.
-        image_size = (pair.left.shape[1], pair.left.shape[0])
-        view = await workers.run(
-            detect_view, BoardImages(f"view {number}", pair.left, pair.right), board
-        )
+        with _left_where_it_stands(station, number, len(poses)):
+            await _move(station, base_T_flange)
+            pair = await station.camera.grab()
+            # In the order of OpenCV, width first; arrays have the height first.
+            image_size = (pair.left.shape[1], pair.left.shape[0])
+            view = await workers.run(
+                detect_view, BoardImages(f"view {number}", pair.left, pair.right), board
+            )
         # A view without the board is no fault: at the borders of the field it may be cut off. What
         # all views together must cover, the solver checks.
         if view is not None:
@@ -83,6 +88,19 @@ def flange_poses(
         base_T_flange * flange_T_head * head_T_view * head_T_flange
         for head_T_view in stereo_views(count, pivot_m)
     ]
+
+
+@contextmanager
+def _left_where_it_stands(station: StereoStation, number: int, count: int) -> Iterator[None]:
+    """Have a fault say that nothing drives the head back."""
+    try:
+        yield
+    except CellError as fault:
+        fault.add_note(
+            f"{station.name} was left at or near view {number} of {count}, tilted over the board: "
+            "keep its way clear, the next procedure drives it from there"
+        )
+        raise
 
 
 async def _move(station: StereoStation, base_T_flange: RigidTransform) -> None:

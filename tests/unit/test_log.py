@@ -1,6 +1,8 @@
 """Lines of the daemon and of drivers look alike, and the level holds for both."""
 
+import asyncio
 import errno
+import gc
 import io
 import json
 import logging
@@ -85,3 +87,30 @@ def test_a_stream_that_was_closed_keeps_nobody_from_logging() -> None:
     log.configure(stream=stream)
     stream.close()
     log.get("cellctl.guard").warning("stopping")
+
+
+async def _fails() -> None:
+    raise ZeroDivisionError("nobody looks")
+
+
+def test_a_task_that_nobody_holds_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+    async def leave_it() -> None:
+        asyncio.get_running_loop().create_task(_fails(), name="left alone")
+        await asyncio.sleep(0)
+        await asyncio.sleep(0)
+        gc.collect()
+
+    log.configure()
+    log.always(lambda: {"run": 7})
+    asyncio.run(leave_it())
+    (line,) = _lines(capsys)
+    assert line["event"].startswith("Task exception was never retrieved")
+    assert "left alone" in line["event"]
+    assert "nobody looks" in line["exception"]
+    assert (line["level"], line["run"]) == ("error", 7)
+
+
+def test_warnings_of_asyncio_are_not_told(capsys: pytest.CaptureFixture[str]) -> None:
+    log.configure()
+    logging.getLogger("asyncio").warning("socket.send() raised exception.")
+    assert _lines(capsys) == []

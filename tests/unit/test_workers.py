@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import resource
 import signal
 import subprocess
 import sys
@@ -128,3 +129,35 @@ async def test_who_learns_late_of_an_earlier_death_does_no_harm_to_the_new_worke
         assert await workers.run(os.getpid) == new
     finally:
         workers.close()
+
+
+@pytest.mark.parametrize("count", [1, 2])
+async def test_a_worker_that_cannot_be_started_is_a_numbered_fault(count: int) -> None:
+    """With ``count`` of 2, after one that runs."""
+    workers = VisionWorkers(count=count)
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    try:
+        busy = [asyncio.create_task(workers.run(time.sleep, 30.0)) for _ in range(count - 1)]
+        await asyncio.sleep(0)
+        # The descriptors that are open stay, and no further one can be had.
+        resource.setrlimit(resource.RLIMIT_NOFILE, (_lowest_free_descriptor(), limits[1]))
+        try:
+            with pytest.raises(WorkerDied, match="cannot be started: .*Too many open files"):
+                await workers.run(os.getpid)
+        finally:
+            resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+        with pytest.raises(WorkerDied, match="not yet replaced"):
+            await workers.run(os.getpid)
+        workers.revive()
+        assert await workers.run(os.getpid)
+        for task in busy:
+            with pytest.raises(WorkerDied):
+                await task
+    finally:
+        workers.close()
+
+
+def _lowest_free_descriptor() -> int:
+    descriptor = os.dup(0)
+    os.close(descriptor)
+    return descriptor

@@ -19,10 +19,10 @@ class Solver:
         self.given: tuple[object, ...] = ()
         self._seen = seen
         rig.answer(
-            detect_view=self._detect, calibrate_stereo=self._solve, stereo_picture=lambda _: b"png"
+            detect_view=self.detect, calibrate_stereo=self._solve, stereo_picture=lambda _: b"png"
         )
 
-    def _detect(self, pair: object, board: object) -> object | None:
+    def detect(self, pair: object, board: object) -> object | None:
         self.views.append(pair.name)  # type: ignore[attr-defined]
         every_other = len(self.views) % 2
         return pair if self._seen and every_other else None
@@ -71,3 +71,20 @@ async def test_a_camera_that_falls_silent_ends_it(rig: ProcedureRig) -> None:
     with pytest.raises(ReplyTimeout):
         await rig.run(101)
     assert len(rig.bench.cell.aux_1.moves) == 2
+
+
+async def test_a_fault_in_the_middle_leaves_the_head_there_and_says_where(
+    rig: ProcedureRig,
+) -> None:
+    solver, station = Solver(rig), rig.bench.cell.head_1
+
+    def silent_from_the_third_on(pair: object, board: object) -> object | None:
+        station.camera.silent = len(solver.views) == 1  # type: ignore[attr-defined]
+        return solver.detect(pair, board)
+
+    rig.answer(detect_view=silent_from_the_third_on)
+    with pytest.raises(ReplyTimeout) as caught:
+        await rig.run(101)
+    assert len(rig.bench.cell.aux_1.moves) == 1 + 3, "to the board, and to three views"
+    (note,) = caught.value.__notes__
+    assert note.startswith("head_1 was left at or near view 3 of 24, tilted over the board")
