@@ -74,6 +74,9 @@ class RequestLink:
                     self._streams = await asyncio.open_connection(
                         host, port, limit=self._limit_bytes
                     )
+            # A name that cannot be one, such as "head..local", is refused by its encoding.
+            except UnicodeError as error:
+                raise ConnectTimeout(f"{self.peer}: {error}") from error
             except OSError as error:  # TimeoutError is one too
                 reason = error.strerror or "no answer"
                 raise ConnectTimeout(f"{self.peer}: {reason}") from error

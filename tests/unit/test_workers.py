@@ -142,7 +142,7 @@ async def test_a_worker_that_cannot_be_started_is_a_numbered_fault(count: int) -
         # The descriptors that are open stay, and no further one can be had.
         resource.setrlimit(resource.RLIMIT_NOFILE, (_lowest_free_descriptor(), limits[1]))
         try:
-            with pytest.raises(WorkerDied, match="cannot be started: .*Too many open files"):
+            with pytest.raises(WorkerDied, match=r"cannot be started: .*Too many open files"):
                 await workers.run(os.getpid)
         finally:
             resource.setrlimit(resource.RLIMIT_NOFILE, limits)

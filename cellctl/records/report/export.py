@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from cellctl.atomic_files import write_durably
 from cellctl.errors.records import ExportFolderTaken, RecordNotWritten, ValueRefused
 from cellctl.records.entered.gauges import part_verdict
 from cellctl.records.entered.notes import notes_of
@@ -128,8 +129,9 @@ def _safe(name: str) -> PurePosixPath:
 
 def _write(path: Path, data: bytes) -> None:
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(data)
+        # Whole or not at all: a folder with half of a record would be refused as that of another
+        # run, also when this run is exported again.
+        write_durably(path, data)
     except OSError as error:
         raise RecordNotWritten(f"{path}: {error.strerror}") from error
 

@@ -114,8 +114,12 @@ def duration(start: datetime, end: datetime | None) -> str:
     """Time between two moments, in seconds or in minutes and seconds; "open" without an end."""
     if end is None:
         return "open"
-    seconds = (end - start).total_seconds()
-    return f"{seconds:.1f} s" if seconds < 120 else f"{seconds // 60:.0f} min {seconds % 60:.0f} s"
+    exact_s = (end - start).total_seconds()
+    if exact_s < 120:
+        return f"{exact_s:.1f} s"
+    # Rounded before it is divided: 179.6 s are 3 min 0 s, and not 2 min 60 s.
+    minutes, seconds = divmod(round(exact_s), 60)
+    return f"{minutes} min {seconds} s"
 
 
 def short(sha256: str) -> str:

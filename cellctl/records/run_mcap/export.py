@@ -62,10 +62,13 @@ def export_mcap(
             writer = RunFileWriter(stream)
             _write(writer, sources, form)
         part.replace(path)
-    except OSError as error:
-        # The fault is that of the file; what is left of it must not hide it.
+    except BaseException as error:
+        # Also where somebody has interrupted it: hundreds of megabytes that nobody looks for. The
+        # fault is that of the file; what is left of it must not hide it.
         with suppress(OSError):
             part.unlink()
+        if not isinstance(error, OSError):
+            raise
         raise RecordNotWritten(f"{path}: {error.strerror}") from error
     return ExportedRun(path, dict(writer.written), frozenset(writer.frames), tuple(sources.missing))
 

@@ -6,7 +6,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from drivers.ftsensor.sri.protocol import Check, FrameLayout, Unit
 
-Six = tuple[float, float, float, float, float, float]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Six = tuple[Finite, Finite, Finite, Finite, Finite, Finite]
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 PositiveSix = tuple[Positive, Positive, Positive, Positive, Positive, Positive]
 Matrix = tuple[Six, Six, Six, Six, Six, Six]

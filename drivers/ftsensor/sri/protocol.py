@@ -5,6 +5,7 @@ Both travel on one byte stream, and a reply may stand between two frames. A fram
 CR LF occur inside data: only the exact length *and* the check make a frame.
 """
 
+import math
 import re
 import struct
 from dataclasses import dataclass
@@ -204,13 +205,24 @@ def parse_format(text: str) -> DataFormat:
 
 
 def parse_six(text: str) -> Six:
-    """Six numbers from ``v1;…;v6``; ``ValueError`` when they are not."""
+    """Six finite numbers from ``v1;…;v6``; ``ValueError`` when they are not."""
     a, b, c, d, e, f = (float(value) for value in text.split(";"))
+    # A matrix that holds NaN would be equal to any other within any limit.
+    if not all(map(math.isfinite, (a, b, c, d, e, f))):
+        raise ValueError(f"{text!r} is not finite")
     return a, b, c, d, e, f
 
 
+def parse_six_positive(text: str) -> Six:
+    """The same of factors that are divided by; ``ValueError`` also for zero and below."""
+    values = parse_six(text)
+    if min(values) <= 0.0:
+        raise ValueError(f"{text!r} is not positive")
+    return values
+
+
 def parse_matrix(text: str) -> tuple[Six, ...]:
-    """Six rows of six numbers from ``(…);(…);…``; ``ValueError`` when they are not."""
+    """Six rows of six finite numbers from ``(…);(…);…``; ``ValueError`` when they are not."""
     rows = tuple(parse_six(row.replace(",", ";")) for row in _GROUP.findall(text))
     if len(rows) != CHANNELS:
         raise ValueError(f"{len(rows)} rows in a matrix")

@@ -17,6 +17,7 @@ from drivers.ftsensor.sri.protocol import (
     parse_format,
     parse_matrix,
     parse_six,
+    parse_six_positive,
 )
 
 _DRAIN_S = 2.0
@@ -132,11 +133,11 @@ class AtStartUp:
         if self._config.unit == "M":
             return values.from_bridge(matrix)
         zero = _parsed("zero (AMPZ)", parse_six, (yield from self._need("AMPZ", "?")))
-        gain = _parsed("gain (CHNAPG)", parse_six, (yield from self._need("CHNAPG", "?")))
+        gain = _parsed("gain (CHNAPG)", parse_six_positive, (yield from self._need("CHNAPG", "?")))
         excitation_v: tuple[float, ...] = _ONES
         if self._config.raw_unit == "MVPV":
             text = yield from self._need("EXMV", "?")
-            excitation_v = _parsed("excitation (EXMV)", parse_six, text)
+            excitation_v = _parsed("excitation (EXMV)", parse_six_positive, text)
         return values.from_counts(matrix, zero, gain, excitation_v)
 
     def _ask(self, name: str, value: str) -> _Ask:

@@ -201,3 +201,9 @@ def test_noise_with_a_good_crc_is_a_violation(data: bytes) -> None:
         protocol.parse_header(
             signed + struct.pack(">I", zlib.crc32(signed)), ServerCommand.GRAB_PAIR, 1
         )
+
+
+async def test_a_name_that_cannot_be_one_is_told() -> None:
+    head = FrameServerHead("head", FrameServerConfig(host="head..local", port=5000))
+    with pytest.raises(ConnectTimeout, match="label"):
+        await head.connect()

@@ -105,3 +105,27 @@ def test_what_does_not_fit(
 
 def test_can_stops_before_it_starts() -> None:
     assert [exchange.send for exchange in CanStartUp().run()] == [b"\x00", b"\x02"]
+
+
+@pytest.mark.parametrize(
+    "expected", [None, tuple(tuple(float(i == j) for j in range(6)) for i in range(6))]
+)
+def test_a_matrix_that_is_no_number_is_refused(expected: object) -> None:
+    broken = MATRIX.replace("1.0", "nan", 1)
+    with pytest.raises(SensorSetupWrong, match=r"matrix \(DCPM\)"):
+        talk(ANSWERS | {"DCPM=?": broken}, matrix=expected)
+
+
+@pytest.mark.parametrize("broken", ["CHNAPG=?", "EXMV=?"])
+@pytest.mark.parametrize("values", ["1;1;0;1;1;1", "1;1;-5;1;1;1", "1;1;nan;1;1;1"])
+def test_factors_that_cannot_be_divided_by_are_refused(broken: str, values: str) -> None:
+    answers = ANSWERS | {
+        "SGDM=(A01,A02,A03,A04,A05,A06);C;1;(WMA:1)": FORMAT.format(unit="C"),
+        "SGDM=?": FORMAT.format(unit="C"),
+        "AMPZ=?": "0;0;0;0;0;0",
+        "CHNAPG=?": "1;1;1;1;1;1",
+        "EXMV=?": "5;5;5;5;5;5",
+    }
+    talk(answers, unit="C")
+    with pytest.raises(SensorSetupWrong, match=broken.removesuffix("=?")):
+        talk(answers | {broken: values}, unit="C")

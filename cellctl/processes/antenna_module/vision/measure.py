@@ -100,7 +100,7 @@ def measure_connector(
     ]
     require_light_from_all_sides(image, rim_plane, connector, rims)
     _require_scale(found.fit, plane, seen)
-    _require_certain(found.fit)
+    require_certain(found.fit)
     contacts = contact_states(found, pattern, rim_plane)
     radius_px = pattern.diameter_m / 2.0 / rim_plane.m_per_px(found.fit.shift_m)
     return ConnectorMeasurement(
@@ -264,16 +264,19 @@ def _require_connector(
 def _require_scale(fit: PlanarFit, plane: MeasuringPlane, calibration: PlaneCalibration) -> None:
     distance_m = float(plane.camera_T_plane.translation[2])
     sigma = float(np.hypot(fit.scale_sigma, calibration.sigma_height_m / distance_m))
-    if abs(fit.scale - 1.0) > _SCALE_LIMIT * sigma:
+    # Here and below written so that what is not a number is refused too.
+    if not abs(fit.scale - 1.0) <= _SCALE_LIMIT * sigma:
         raise PlaneScaleWrong(
             f"scale {fit.scale:.5f}, expected 1 ± {_SCALE_LIMIT * sigma:.5f}; as if the plane were "
             f"{(1.0 / fit.scale - 1.0) * distance_m / MM:+.2f} mm farther away"
         )
 
 
-def _require_certain(fit: PlanarFit) -> None:
-    x, y, yaw = np.sqrt(np.diag(fit.covariance))
-    if max(x, y) > SIGMA_LIMIT_M or yaw > YAW_LIMIT_RAD:
+def require_certain(fit: PlanarFit) -> None:
+    """Raise ``ConnectorUncertain``; a variance below zero, of a fit gone wrong, is none."""
+    with np.errstate(invalid="ignore"):
+        x, y, yaw = np.sqrt(np.diag(fit.covariance))
+    if not (x <= SIGMA_LIMIT_M and y <= SIGMA_LIMIT_M and yaw <= YAW_LIMIT_RAD):
         raise ConnectorUncertain(
             f"standard deviations {x * 1e6:.1f}, {y * 1e6:.1f} µm, {np.degrees(yaw):.3f}°"
         )

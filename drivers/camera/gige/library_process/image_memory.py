@@ -22,8 +22,13 @@ class _Block:
     @classmethod
     def of(cls, size: int) -> "_Block":
         descriptor = os.memfd_create("gige-image", os.MFD_CLOEXEC)
-        os.ftruncate(descriptor, size)
-        return cls(descriptor, mmap.mmap(descriptor, size))
+        try:
+            os.ftruncate(descriptor, size)
+            return cls(descriptor, mmap.mmap(descriptor, size))
+        except BaseException:
+            # No memory left, or an image without a pixel, which comes again and again.
+            os.close(descriptor)
+            raise
 
     def close(self) -> None:
         self.memory.close()

@@ -2,6 +2,7 @@
 
 import contextlib
 import select
+import termios
 
 import serial
 
@@ -31,7 +32,8 @@ class SerialConnection(Connection):
                 write_timeout=0.5,
                 exclusive=True,
             )
-        except (serial.SerialException, ValueError) as error:
+        # An adapter that is pulled out while it is opened shows in any of these ways.
+        except (OSError, ValueError, termios.error) as error:
             raise faults.cannot_connect(self.peer, error) from error
         # FTDI adapters gather for 16 ms unless told not to; ptys and others know no such setting.
         with contextlib.suppress(OSError, ValueError, serial.SerialException):

@@ -54,7 +54,8 @@ class TcpConnection(Connection):
             # for a quarter of an hour before it reports the link as lost.
             self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, _UNANSWERED_MS)
             code = self._socket.connect_ex(self._found.address)
-        except OSError as error:
+        # A name that cannot be one, such as "box..local", is refused by its encoding.
+        except (OSError, UnicodeError) as error:
             self.close()
             raise faults.cannot_connect(self.peer, error) from error
         if code not in (0, errno.EINPROGRESS):

@@ -1,13 +1,18 @@
 """Work that nobody waits for."""
 
 import asyncio
+import logging
 from collections.abc import Coroutine
+
+from cellctl.errors import CellError
+
+_log = logging.getLogger(__name__)
 
 
 class BackgroundTasks:
     """Holds tasks until they end, because the event loop itself only holds weak references to them.
 
-    What a task raises it must make known itself.
+    What faults a task raises it must make known itself.
     """
 
     def __init__(self) -> None:
@@ -27,6 +32,8 @@ class BackgroundTasks:
 
     def _forget(self, task: "asyncio.Task[None]") -> None:
         self._tasks.discard(task)
-        # Taken, so that the event loop does not report a fault that is known as one nobody saw.
-        if not task.cancelled():
-            task.exception()
+        # Taken, so that the event loop does not report a fault that is known as one nobody saw. A
+        # defect is known to nobody.
+        error = None if task.cancelled() else task.exception()
+        if error is not None and not isinstance(error, CellError):
+            _log.error("background work of a robot's link failed", exc_info=error)

@@ -1,15 +1,21 @@
 """The exported folder and the pages that any run has; how they look is judged by eye."""
 
 import json
+import resource
 from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import ArtefactDamaged, ExportFolderTaken, ValueRefused
+from cellctl.errors.records import (
+    ArtefactDamaged,
+    ExportFolderTaken,
+    RecordNotWritten,
+    ValueRefused,
+)
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.figures import Limit, figure
-from cellctl.records.report.export import export_run
+from cellctl.records.report.export import export_run, write_report
 from cellctl.records.report.sections import (
     Drawing,
     FactList,
@@ -211,3 +217,20 @@ def test_what_was_taught_or_measured_is_no_part_that_is_accepted(
     assert "Passed" in text
     for word in ("Good part", "Acceptance record"):
         assert word not in text
+
+
+def test_an_export_that_the_disk_has_no_room_for_leaves_the_older_one_whole(
+    store: RunStore, tmp_path: Path
+) -> None:
+    number, path = good_run(store), tmp_path / "report.html"
+    write_report(store, number, path)
+    whole = path.read_bytes()
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(whole) // 2, limits[1]))
+    try:
+        with pytest.raises(RecordNotWritten, match="File too large"):
+            write_report(store, number, path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert path.read_bytes() == whole
+    assert [one.name for one in tmp_path.glob("report*")] == ["report.html"]

@@ -1,6 +1,10 @@
 """Vectors are written with their axes and units; what only programs read is left out."""
 
-from cellctl.records.report.text import facts
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from cellctl.records.report.text import duration, facts
 
 
 def test_six_components_are_written_with_axes_and_units() -> None:
@@ -31,3 +35,12 @@ def test_a_list_of_documents_is_numbered_and_deeper_ones_are_left_out() -> None:
         "images": [{"contacts": [{"name": "1"}]}],
     }
     assert list(facts(document)) == [("moves 1: travel", "9 mm"), ("moves 2: travel", "9.5 mm")]
+
+
+@pytest.mark.parametrize(
+    ("seconds", "text"),
+    [(119.94, "119.9 s"), (120.0, "2 min 0 s"), (179.6, "3 min 0 s"), (3599.4, "59 min 59 s")],
+)
+def test_a_minute_has_no_sixty_seconds(seconds: float, text: str) -> None:
+    start = datetime(2026, 1, 1, tzinfo=UTC)
+    assert duration(start, start + timedelta(seconds=seconds)) == text

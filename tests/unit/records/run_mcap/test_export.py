@@ -295,3 +295,16 @@ def test_a_run_that_names_no_robot_is_looked_at_from_the_first_of_all() -> None:
     layout = json.loads(layout_for(["/log"], frames))
     assert layout["configById"]["3D!scene"]["followTf"] == "aux_1/base"
     assert "followTf" not in json.loads(layout_for(["/log"], ()))["configById"]["3D!scene"]
+
+
+def test_a_file_that_somebody_interrupts_is_not_left_behind(
+    store: RunStore, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(_sha256: str) -> bytes:
+        raise KeyboardInterrupt
+
+    number = closed_run(store)
+    monkeypatch.setattr(store.artefacts, "get", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        export_mcap(store, number, tmp_path / "out" / "run.mcap")
+    assert list((tmp_path / "out").iterdir()) == []

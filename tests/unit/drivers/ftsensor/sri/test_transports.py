@@ -2,6 +2,7 @@
 
 import os
 import pty
+import resource
 import socket
 import time
 from collections.abc import Iterator
@@ -206,3 +207,21 @@ def test_nothing_goes_over_a_link_that_was_not_opened(connection: Connection) ->
 def test_tcp_that_was_not_opened_is_not_waited_for() -> None:
     with pytest.raises(LinkLost, match="not connected"):
         TcpConnection("127.0.0.1", 9).established()
+
+
+def test_a_serial_line_that_cannot_be_opened_to_its_end_is_told(line: tuple[int, str]) -> None:
+    """The device can be opened, and what else it takes cannot."""
+    limits = resource.getrlimit(resource.RLIMIT_NOFILE)
+    free = os.dup(0)
+    os.close(free)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (free + 1, limits[1]))
+    try:
+        with pytest.raises(ConnectTimeout, match="Too many open files"):
+            SerialConnection(line[1], 115200).connect()
+    finally:
+        resource.setrlimit(resource.RLIMIT_NOFILE, limits)
+
+
+def test_a_name_that_cannot_be_one_is_told() -> None:
+    with pytest.raises(ConnectTimeout, match="label"):
+        TcpConnection("box..local", 4008).connect()

@@ -45,3 +45,10 @@ def test_only_some_are_kept() -> None:
     assert len(os.listdir("/proc/self/fd")) == before + DESCRIPTORS * MOST_FREE
     with pytest.raises(KeyError):
         memory.take_back([0])
+
+
+def test_an_image_without_a_pixel_costs_no_descriptor() -> None:
+    memory, before = ImageMemory(), os.listdir("/proc/self/fd")
+    with pytest.raises(ValueError, match="empty"):
+        memory.filled(image(1, size=0))
+    assert os.listdir("/proc/self/fd") == before
