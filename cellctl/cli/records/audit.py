@@ -29,7 +29,8 @@ def audit(
     if as_json:
         typer.echo(as_plain([asdict(entry) for entry in found]))
     elif found:
-        Console().print(_table(found))
+        # Details hold whatever people have typed: brackets in it are no mark-up.
+        Console().print(_table(found), markup=False)
     else:
         typer.echo(f"no such entries, of {len(log)}")
 

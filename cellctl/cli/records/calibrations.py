@@ -44,7 +44,8 @@ def list_calibrations(*, as_json: AsJson = False, data_dir: DataDir = None) -> N
             _state(one, now),
             one.id[:12],
         )
-    Console().print(table)
+    # Reasons hold whatever people have typed: brackets in it are no mark-up.
+    Console().print(table, markup=False)
 
 
 @app.command()
@@ -74,7 +75,7 @@ def show(
             f"{_verdict(one)}; {_state(one, now)}",
             markup=False,
         )
-    console.print(_figures(found))
+    console.print(_figures(found), markup=False)
 
 
 def _kept(data_dir: DataDir) -> list[Calibration]:

@@ -41,6 +41,12 @@ def test_entries_are_chosen_by_who_and_what(folder: Path) -> None:
     assert "no such entries, of 3" in said(folder, "--action", "reset")
 
 
+def test_brackets_that_people_type_are_shown(folder: Path) -> None:
+    with closing(RunStore(folder)) as store:
+        store.audit("terminal:li", "note", {"remark": "seal [red] broken [/see 7]"})
+    assert "seal [red] broken [/see 7]" in said(folder, "--action", "note")
+
+
 def test_a_mistyped_folder_makes_no_store(tmp_path: Path) -> None:
     absent = tmp_path / "absent"
     done = CliRunner().invoke(whole_app(), ["audit", "--data-dir", str(absent)])

@@ -52,6 +52,13 @@ def test_the_newest_of_each_kind_is_listed(folder: str) -> None:
     assert "payload" in done.stdout
 
 
+def test_brackets_in_a_reason_are_shown(store: RunStore, folder: str) -> None:
+    store.invalidate_calibration(read_stored(SHIPPED, "payload"), "new [left] pad [/see 7]")
+    done = asked("list", "--data-dir", folder)
+    assert done.exit_code == 0, done.output
+    assert "new [left] pad [/see 7]" in done.stdout
+
+
 def test_a_kind_is_shown_with_its_figures_over_the_years(folder: str) -> None:
     done = asked("show", "head_1", "--data-dir", folder)
     assert done.exit_code == 0, done.output
