@@ -15,7 +15,7 @@ from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.known_kinds import KINDS
 
 _HOLE_KEYS = {"name", "kind", "diameter_mm", "position_mm", "countersink_mm"}
-_FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis", "position_sigma_mm"}
+_FILE_KEYS = {"hole", "head_1", "head_2", "outward_axis", "position_sigma_mm", "thickness_mm"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,6 +25,8 @@ class FeatureFile:
     holes: tuple[Hole, ...]
     head_1: tuple[str, ...] = ()
     head_2: tuple[str, ...] = ()
+    thickness_m: float | None = None
+    """Of the part, by its drawing; None when the file does not say."""
 
     def seen_by(self, head: Literal[1, 2]) -> tuple[Hole, ...]:
         """Holes of one head, in the order of its list."""
@@ -64,6 +66,9 @@ def _features(data: Mapping[str, Any]) -> FeatureFile:
     sigma_m = 0.0
     if "position_sigma_mm" in data:
         sigma_m = _positive(data, "position_sigma_mm", "the file") * MM
+    thickness_m = None
+    if "thickness_mm" in data:
+        thickness_m = _positive(data, "thickness_mm", "the file") * MM
     holes = tuple(
         replace(_hole(table, index, outward), position_sigma_m=sigma_m)
         for index, table in enumerate(tables, start=1)
@@ -72,7 +77,7 @@ def _features(data: Mapping[str, Any]) -> FeatureFile:
     if len(set(names)) != len(names):
         raise ValueError("every hole needs a name of its own")
     heads = [_head(data, key, names) for key in ("head_1", "head_2")]
-    return FeatureFile(holes, heads[0], heads[1])
+    return FeatureFile(holes, heads[0], heads[1], thickness_m)
 
 
 def _head(data: Mapping[str, Any], key: str, names: list[str]) -> tuple[str, ...]:

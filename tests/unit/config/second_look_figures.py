@@ -33,6 +33,18 @@ FIGURES = (
         "recipes.0.deck_thickness_mm",
         "depth of countersink P2",
     ),
+    deck(
+        "deck_thickness_mm = 15.0",
+        "deck_thickness_mm = 3.0",
+        "recipes.0.deck_thickness_mm",
+        "15, give or take 1: thickness_mm of its features",
+    ),
+    deck(
+        "deck_thickness_mm = 15.0",
+        "deck_thickness_mm = 18.0",
+        "recipes.0.deck_thickness_mm",
+        "15, give or take 1: thickness_mm of its features",
+    ),
     deck_elsewhere(
         "deck_thickness_sigma_mm = 0.012",
         "deck_thickness_sigma_mm = 0.12",

@@ -52,6 +52,7 @@ def test_the_feature_files_of_the_cell_are_valid() -> None:
         ('["P1"]', '["P9"]', "head_1"),
         ("countersink_mm = 10.0", "countersink_mm = 4.0", "exceed"),
         ("[[hole]]", "[[", "not TOML"),
+        ("[[hole]]", "thickness_mm = 0.0\n[[hole]]", "thickness_mm"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_named(tmp_path: Path, old: str, new: str, word: str) -> None:

@@ -28,6 +28,9 @@ _MOST_OVER_TARGET = 5.0
 """Limit of force over target force. The guard stops in time to keep a limit of 1.4 times."""
 _LEAST_STOP_MS = 20.0
 """A few cycles of a controller, before its brakes even begin."""
+_THICKNESS_OFF_MM = 1.0
+"""How far a measured deck may be off its drawing: more than plates are, and little enough that what
+is left of a stand-off of centimetres is driven slowly."""
 _LEAST_BOARD_MM = 50.0
 """A board of less fills a sixth of the picture of a small-field head, and calibrates its middle."""
 
@@ -105,8 +108,13 @@ def _thresholds(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
 
 
 def _thickness(recipe: DeckRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
-    """A deck that is thinner than its countersinks are deep."""
-    for hole in read_features(folder / recipe.deck_features).holes:
+    """A deck thinner than its countersinks are deep, or not as thick as on its drawing.
+
+    The heads see the upper face. How far below it the deck ends is what the recipe says, and a deck
+    that is thicker than that meets its frame on the fast way to the stand-off.
+    """
+    features = read_features(folder / recipe.deck_features)
+    for hole in features.holes:
         if hole.countersink_m is None:
             continue
         deep_mm = (hole.countersink_m - hole.diameter_m) / 2.0 / MM  # 90 degrees, as for ISO 10642
@@ -114,3 +122,9 @@ def _thickness(recipe: DeckRecipe, key: str, folder: Path) -> Iterator[ConfigIss
             allowed = f"more than {deep_mm:g}, the depth of countersink {hole.name}"
             yield ConfigIssue(f"{key}.deck_thickness_mm", f"{recipe.deck_thickness_mm:g}", allowed)
             return
+    if features.thickness_m is None:
+        return  # a remark says that there is nothing to compare with
+    drawn_mm = features.thickness_m / MM
+    if abs(recipe.deck_thickness_mm - drawn_mm) > _THICKNESS_OFF_MM:
+        allowed = f"{drawn_mm:g}, give or take {_THICKNESS_OFF_MM:g}: thickness_mm of its features"
+        yield ConfigIssue(f"{key}.deck_thickness_mm", f"{recipe.deck_thickness_mm:g}", allowed)
