@@ -1,10 +1,16 @@
 """The handshake with the line PLC: when its registers are a command, and what becomes of it.
 
-Registers 0 to 26 and 28 to 39 are read as a command at the moment when ``cmd_seq`` changes. The
-first number after a start of the cell is suspect, because it may have been in the PLC for days.
-Only 1 is accepted, with which a PLC says that it begins anew; and not even 1 when that was the last
-number before the start. Commands that can only halt the unit are accepted with any first number: an
-old Stop does no harm, and a new one that is ignored leaves a robot moving.
+Registers 0 to 26 and 28 to 39 are read as a command at the moment when ``cmd_seq`` is another than
+the one that the same client wrote before. Each client has numbers of its own: a PLC that writes its
+whole image again and again says nothing new with it, also when another client has given a command
+in between.
+
+The first number of a client after a start of the cell is suspect, because it may have been in the
+PLC for days. Accepted are 1, with which a PLC says that it begins anew, and the number after
+``ack_seq``, which only who has read it can know; neither when it was the last number before the
+start. Commands that can only halt the unit are accepted with any first number, and with the number
+of another command before them: an old Stop does no harm, and a new one that is ignored leaves a
+robot moving.
 """
 
 from collections.abc import Sequence
@@ -27,36 +33,52 @@ class CommandLatch:
         """``previous_seq``: number of the last command before this start, None if not known."""
         self._previous_seq = previous_seq
         self._order = order
-        self._fresh = True
-        self._seen = 0
+        self._seen: dict[str, tuple[int, int]] = {}
+        """Last ``cmd_seq`` of each client, and the command that came with it."""
+        self._heard: set[str] = set()
+        """Clients that have given a number other than 0 since the start."""
+        self._last_client: str | None = None
         self._begun: tuple[int, Result] | None = None
         self.ack_seq = 0
         self.done_seq = 0
         self.result = Result.NONE
         self.reject_code = RejectCode.NONE
 
-    def commit(self, holding: Sequence[int]) -> tuple[int, UnitCommand] | None:
-        """The number and the command in the holding registers.
+    def commit(self, holding: Sequence[int], client: str) -> tuple[int, UnitCommand] | None:
+        """The number and the command in the holding registers, which this client has written.
 
         None when they are no new command: the same number again, 0, or left from before the start.
         """
-        seq = _number(holding, "cmd_seq")
-        if seq == self._seen:
-            return None
-        self._seen = seq
+        seq, command = _number(holding, "cmd_seq"), _parse(holding, self._order)
+        seen_seq, seen_command = self._seen.get(client, (0, 0))
+        self._seen[client] = seq, command.cntrl_cmd
         if seq == 0:
-            # A PLC that clears its registers begins the handshake anew. It does not lift the rule
-            # for the first number: the next one may still be an old one.
-            self.ack_seq = self.done_seq = 0
-            self.result, self.reject_code = Result.NONE, RejectCode.NONE
+            self._begin_anew(client)
             return None
-        fresh, self._fresh = self._fresh, False
-        command = _parse(holding, self._order)
-        suspect = fresh and (seq != 1 or self._previous_seq == 1)
-        if suspect and not command.only_halts:
+        halts_now = command.only_halts and command.cntrl_cmd != seen_command
+        if seq == seen_seq and not halts_now:
+            return None
+        first, self._last_client = client not in self._heard, client
+        self._heard.add(client)
+        if first and not (command.only_halts or self._is_counted_on(seq)):
             self._end(seq, Result.IGNORED, RejectCode.IGNORED_AFTER_RESTART)
             return None
         return seq, command
+
+    def _is_counted_on(self, seq: int) -> bool:
+        """Whether a first number was made for this handshake, and did not stand there before."""
+        after_the_last = self.ack_seq != 0 and seq == self.ack_seq + 1
+        return (seq == 1 or after_the_last) and seq != self._previous_seq
+
+    def _begin_anew(self, client: str) -> None:
+        """A PLC that clears its registers begins the handshake anew.
+
+        It does not lift the rule for the first number: the next one may still be an old one. And it
+        takes no answer away for which another client waits.
+        """
+        if self._last_client in {None, client}:
+            self.ack_seq = self.done_seq = 0
+            self.result, self.reject_code = Result.NONE, RejectCode.NONE
 
     def begin(self, seq: int) -> None:
         """The command is being submitted. It may end before it is known to be accepted."""
