@@ -44,6 +44,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     FAILED,
     FLANGE,
     FLANGE_T_DECK,
+    FORCE_WHILE_VERIFIED,
     FRAME,
     HEAD_1,
     LOOP,
@@ -187,10 +188,18 @@ class DeckRecorder:
         seat: SeatError,
         recipe: DeckRecipe,
         measured: PartMeasurement,
+        force_n: float,
     ) -> None:
-        """The seated deck: error against the seat, gap, rotation, offset at each pin hole."""
+        """The seated deck: error against the seat, gap, rotation, offset at each pin hole, and the
+        greatest force on it while it was measured."""
         await self.measurement("seated", measured)
-        await self._document(seat_record(seat, recipe), seat_limits_of(seat, recipe))
+        await self._document(
+            {**seat_record(seat, recipe), f"{FORCE_WHILE_VERIFIED}_n": force_n},
+            {
+                **seat_limits_of(seat, recipe),
+                FORCE_WHILE_VERIFIED: Limit(upper=recipe.mating.limit_force_n),
+            },
+        )
 
     async def gauge_holes(self, pins: Iterable[Hole], recipe: DeckRecipe) -> None:
         """The holes that a person may gauge, with the gauge that a good part lets through."""

@@ -21,6 +21,7 @@ _MATING = {
     "hold_lateral": "lateral force while seated",
     "released_force": "force after release",
     keys.PEAK_FORCE: "greatest force along the approach, single samples",
+    keys.FORCE_WHILE_VERIFIED: "greatest force along the approach while the seat was verified",
     "peak_filtered_force": "greatest force along the approach, mean of 5 ms",
     "peak_lateral": "greatest lateral force, single samples",
     "peak_moment": "greatest moment, single samples",

@@ -2,6 +2,9 @@
 
 from collections.abc import Iterator
 
+from cellctl.cell.guarded_motion.contact_recorder import ContactRecorder
+from cellctl.errors.force import ForceLimitExceeded
+from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.processes.deck_to_frame.poses.part_measurer import PartMeasurement
@@ -17,18 +20,29 @@ async def verify(seat: Seated) -> Verified:
     between deck and frame in the middle of the face. The mating has judged the gap by the travel of
     the arm; the cameras do not depend on that. A figure that is within its limit by less than its
     uncertainty proves nothing (docs/decisions/0016): it is measured once more, with all frames.
+
+    Nothing moves here, so that the guard would have nothing to stop. Whoever presses on the deck
+    meanwhile presses it out of the seat that was judged: raises ``ForceLimitExceeded`` beyond the
+    limit of the mating.
     """
     run = seat.run
-    measurement, found = await _look(seat)
-    if list(_unproven(found, run.recipe)):
-        await run.recorder.measurement("seated", measurement)
-        measurement, found = await _look(seat, run.recipe.pose_correction.max_frames)
+    async with ContactRecorder(run.cell.main, run.cell.guard, lambda _: 0.0) as contact:
+        measurement, found = await _look(seat)
+        if list(_unproven(found, run.recipe)):
+            await run.recorder.measurement("seated", measurement)
+            measurement, found = await _look(seat, run.recipe.pose_correction.max_frames)
+    force_n = _greatest_n(contact.curve())
     # Recorded before it is judged: a part beyond its limits needs its figures more than a good one.
-    await run.recorder.verification(found, run.recipe, measurement)
+    await run.recorder.verification(found, run.recipe, measurement, force_n)
     if pins := pin_holes(run.facts.deck_features.holes):
         await run.recorder.gauge_holes(pins, run.recipe)
     if unproven := list(_unproven(found, run.recipe)):
         raise SeatedOffPosition("; ".join(unproven))
+    # Written so that a force that is not known is refused.
+    if not force_n <= (limit_n := run.recipe.mating.limit_force_n):
+        raise ForceLimitExceeded(
+            f"{force_n:.1f} N on the seated deck while it was verified, allowed {limit_n:g} N"
+        )
     return Verified(
         run,
         seat.frame,
@@ -38,6 +52,13 @@ async def verify(seat: Seated) -> Verified:
         seat.M_T_D,
         seat.measured_at,
     )
+
+
+def _greatest_n(curve: ForceCurve) -> float:
+    """Greatest force along the approach, filtered as the guard does; NaN without samples."""
+    if len(curve.time_s) < 2:
+        return float("nan")
+    return curve_statistics(curve.time_s, curve.wrench).peak_filtered_fz_n
 
 
 async def _look(seat: Seated, frames: int | None = None) -> tuple[PartMeasurement, SeatError]:

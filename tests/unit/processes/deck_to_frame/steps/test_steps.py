@@ -21,7 +21,7 @@ from cellctl.processes.deck_to_frame.faults import (
     PartMisplaced,
     SeatedOffPosition,
 )
-from cellctl.processes.deck_to_frame.state import AtStandOff, Seated
+from cellctl.processes.deck_to_frame.state import AtStandOff, Corrected, Seated
 from cellctl.processes.deck_to_frame.steps.correct_pose import correct_pose
 from cellctl.processes.deck_to_frame.steps.measure_deck import measure_deck
 from cellctl.processes.deck_to_frame.steps.measure_frame import measure_frame
@@ -253,13 +253,25 @@ async def test_a_hold_in_the_loop_spoils_what_was_measured(rig: RunRig) -> None:
 
 
 async def seat(stand_off: AtStandOff, rig: RunRig, offset_mm_deg: list[float]) -> None:
+    await verify(seated(await correct_pose(stand_off), rig, offset_mm_deg))
+
+
+def seated(corrected: Corrected, rig: RunRig, offset_mm_deg: list[float]) -> Seated:
     truth = rig.bench.world
-    corrected = await correct_pose(stand_off)
     M_T_D = pose_from_xyzabc(np.add([0, 0, 15.0, 0, 0, 0], offset_mm_deg))
     deck_on_flange = truth.robot_error * truth.flange_T_deck
     rig.bench.cell.main.flange = truth.base_T_frame * M_T_D * deck_on_flange.inv()
     fields = {field.name: getattr(corrected, field.name) for field in dataclasses.fields(corrected)}
-    await verify(Seated(**fields))
+    return Seated(**fields)
+
+
+async def test_a_deck_that_is_pressed_while_it_is_verified_is_no_good_part(rig: RunRig) -> None:
+    corrected = await correct_pose(await at_the_stand_off(rig))
+    rig.bench.cell.guard.raw += [0.0, 0.0, 58.0, 0.0, 0.0, 0.0]
+    with pytest.raises(ForceLimitExceeded, match="while it was verified"):
+        await verify(seated(corrected, rig, [0.03, 0, 0, 0, 0, 0]))
+    figure = (await rig.record()).newest_figures["force_while_verified"]
+    assert figure.verdict is Verdict.FAIL
 
 
 async def test_a_seated_deck_is_verified_at_its_pins(rig: RunRig) -> None:
