@@ -16,7 +16,8 @@ from rich.table import Table
 
 from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
 from benchmarks.insertion.farmed import Line, farmed, parser_of
-from benchmarks.insertion.random_tasks import RandomTask, Truth, random_task
+from benchmarks.insertion.random_tasks.tasks import RandomTask, random_task
+from benchmarks.insertion.random_tasks.truths import Truth
 from benchmarks.insertion.wilson import wilson_bounds
 from cellctl.errors.base import CellError
 from cellctl.processes.peg_in_hole.offline.curve import parse_curve

@@ -86,7 +86,8 @@ class GuardRefused(ForceError):
 
 
 class ForceLimitExceeded(ForceError):
-    """A compensated force or moment passed its limit and the guard stopped the robot."""
+    """A compensated force or moment passed its limit: the guard has stopped the robot, or it stood
+    already."""
 
     number = 512
     text = "Force limit exceeded"

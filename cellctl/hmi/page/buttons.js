@@ -1,7 +1,7 @@
 // The commands of the cell. What is permitted, and why not, comes from the cell.
 
 import { command } from "./api.js";
-import { clock, h } from "./dom.js";
+import { clock, h, write } from "./dom.js";
 import { cell, stale } from "./live.js";
 import { given, t } from "./texts.js";
 
@@ -127,10 +127,7 @@ export function refresh(root, besides = {}) {
     const name = place.dataset.command;
     const reason = whyNot(name) || besides[name];
     place.querySelector("button").disabled = Boolean(reason);
-    // Written only when it has changed: a screen reader speaks what is written.
     const answer = typeof said[name] === "function" ? said[name]() : said[name];
-    const words = answer || reason || t(`does_${name}`);
-    const small = place.querySelector("small");
-    if (small.textContent !== words) small.textContent = words;
+    write(place.querySelector("small"), answer || reason || t(`does_${name}`));
   }
 }

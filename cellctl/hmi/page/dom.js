@@ -64,3 +64,8 @@ export function table(heads, rows) {
 }
 
 export const num = (of) => ({ num: true, of });
+
+// Only what has changed: a screen reader speaks whatever is written.
+export function write(place, words) {
+  if (place.textContent !== words) place.textContent = words;
+}

@@ -5,7 +5,7 @@
 
 import { controls, give, longPress, refresh } from "./buttons.js";
 import { life, within } from "./calibration.js";
-import { h, table, time } from "./dom.js";
+import { h, table, time, write } from "./dom.js";
 import { cell } from "./live.js";
 import { given, label, spoken, t } from "./texts.js";
 
@@ -117,9 +117,7 @@ function draw(root, s, one) {
   refresh(root, { procedure: complete ? "" : t("tick_first"), mode: s.mode === "MAINTENANCE" ? t("is_maintenance") : "" });
   root.querySelector("#mode-now").textContent = `${t("mode")}: ${t(`mode_${s.mode}`)} · ${given(`state_${s.state}`, s.state)}`;
   progress(root, s, at);
-  const said = root.querySelector("#outcome");
-  const words = outcome(s, at);
-  if (said.textContent !== words) said.textContent = words;
+  write(root.querySelector("#outcome"), outcome(s, at));
   if (at === "under_way") { ticks.clear(); for (const box of root.querySelectorAll("[id^=tick-]")) box.checked = false; }
   const last = s.last_command;
   root.querySelector("#who-runs").textContent = at === "under_way" && last ? t("last_command", t("asked_last"), last.who.replace(/^page:/, ""), `${given(`cmd_${last.command}`, last.command)} ${time(last.time)}`) : "";

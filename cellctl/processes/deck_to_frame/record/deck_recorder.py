@@ -34,8 +34,8 @@ from cellctl.processes.deck_to_frame.record.entries import (
     seat_record,
 )
 from cellctl.processes.deck_to_frame.record.failed_picture import (
-    JPEG_QUALITY,
     Expected,
+    as_jpeg,
     draw_failed,
 )
 from cellctl.processes.deck_to_frame.record.keys import (
@@ -290,8 +290,4 @@ class DeckRecorder:
 
 def draw(image: NDArray[np.uint8], found: PairMeasurement, side: str) -> bytes:
     """Annotated picture as JPEG; runs in a vision worker."""
-    import cv2
-
-    picture = annotate(image, found, "left" if side == "left" else "right")
-    _, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
-    return bytes(data)
+    return as_jpeg(annotate(image, found, "left" if side == "left" else "right"))

@@ -17,7 +17,7 @@ from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import PairMeasurement, Side
 from cellctl.vision.picture import annotate
 
-JPEG_QUALITY = 85
+_JPEG_QUALITY = 85
 _POINTS = 60
 _NEAREST_M = 0.05
 """No lens focuses nearer; what lies behind the camera has no place in its picture."""
@@ -107,6 +107,12 @@ def draw_failed(
         cv2.putText(picture, rim.name, place, font, 1.1, _EXPECTED, 2, cv2.LINE_AA)
     caption = np.zeros((_CAPTION_PX, picture.shape[1], 3), np.uint8)
     cv2.putText(caption, said, (8, _CAPTION_PX - 16), font, 0.9, _WHITE, 2, cv2.LINE_AA)
-    whole = np.vstack([picture, caption])
-    _, data = cv2.imencode(".jpg", whole, [cv2.IMWRITE_JPEG_QUALITY, JPEG_QUALITY])
+    return as_jpeg(np.vstack([picture, caption]))
+
+
+def as_jpeg(picture: NDArray[np.uint8]) -> bytes:
+    """A picture, shape (h, w, 3) in OpenCV's order of colours, as the report shows it."""
+    import cv2
+
+    _, data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
     return bytes(data)

@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from benchmarks.insertion.cycles import CycleInjection, CycleOutcome
-from benchmarks.insertion.random_tasks import RandomTask, Truth, random_task
+from benchmarks.insertion.random_tasks.tasks import RandomTask, random_task
+from benchmarks.insertion.random_tasks.truths import Truth
 from benchmarks.insertion.task_sweep import LINE, SweptTask, findings, sweep_task, table
 from cellctl.errors.base import CellError
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase

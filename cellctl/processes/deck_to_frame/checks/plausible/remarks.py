@@ -20,7 +20,6 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME, PAYLOAD_NAME
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN, MEASURING
 from cellctl.processes.deck_to_frame.settings import DeckSettings
-from cellctl.vision.features.feature_file import read_features
 from cellctl.vision.registration.rigid_fit import on_a_line
 
 _NEARLY = 0.05
@@ -33,9 +32,10 @@ def recipe_remarks(
     cell: CellConfig, recipe: DeckRecipe, key: str, folder: Path
 ) -> Iterator[ConfigIssue]:
     """Called with a file that is good."""
-    for drawing in read_drawings(recipe, key, folder):
+    deck, frame = read_drawings(recipe, key, folder)
+    for drawing in (deck, frame):
         yield from _lines(drawing)
-    yield from _thickness_once(recipe, key, folder)
+    yield from _thickness_once(recipe, key, deck)
     yield from _compared(recipe, key)
     yield from _late(recipe, key)
     yield from _board(cell, recipe, folder)
@@ -55,8 +55,8 @@ def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
             yield drawing.issue(name, str(list(holes)), said)
 
 
-def _thickness_once(recipe: DeckRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
-    if read_features(folder / recipe.deck_features).thickness_m is None:
+def _thickness_once(recipe: DeckRecipe, key: str, deck: PartDrawing) -> Iterator[ConfigIssue]:
+    if deck.features.thickness_m is None:
         said = (
             "stated once, and nothing measures it before the deck touches: state thickness_mm in "
             "the deck's feature file too"

@@ -1,48 +1,25 @@
-"""Tasks that nobody has thought of: parts, holes, cells and truths within what a recipe may say.
+"""Part, hole, cell and what the cell is told of them, drawn by a seed."""
 
-The cell is told what a drawing and a commissioning would tell it, with bounds that are a little
-wide; what is wrong with a truth it is not told.
-"""
-
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from enum import StrEnum
-from math import exp, log
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
-from scipy.spatial.transform import RigidTransform
-
-from benchmarks.insertion.contact_world import DEAD_TIME_S, Injected
+from benchmarks.insertion.contact_world import DEAD_TIME_S
 from benchmarks.insertion.cycles import CycleCell, CycleInjection
 from benchmarks.insertion.farmed import shipped_cell
 from benchmarks.insertion.fault_cycles import CycleFault, injected
+from benchmarks.insertion.random_tasks.draws import Draws
+from benchmarks.insertion.random_tasks.truths import Truth, injection_of
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.run import contact_settings
 from cellctl.processes.peg_in_hole.settings import PegSettings
-from fakes.scenes.socket.part import PegPart, draw_part, nominal_fit
 from fakes.scenes.socket.scenario import SocketScenario
-from fakes.world.frames import displacement
 
-_MM = 1e-3
 _FACE_CLEAR_MM = 1.0
 """The face is touched so far beside all places at which the hole may be."""
-
-
-class Truth(StrEnum):
-    """What is wrong with a task, beside the faults of whole cycles."""
-
-    AS_TOLD = "as the cell is told"
-    TOO_DEEP = "hole deeper than drawn"
-    NO_KEYWAYS = "keyways fit at no angle"
-    ROUGH = "more friction than stated"
-    STIFF = "arm stiffer than its bound"
-    BEYOND = "hole beyond its uncertainty"
-    FAR_FACE = "face beyond its uncertainty"
-    STEEP_FACE = "face tilted by 4 to 8 degrees"
-    PART_MISSING = "no part in the gripper"
-    HELD_OTHERWISE = "part held 1 mm higher or lower"
+_TRUTHS: tuple[Truth | CycleFault, ...] = (*Truth, *CycleFault)
+_AS_TOLD_SHARE = 0.4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,33 +29,6 @@ class RandomTask:
     cell: CycleCell
     truth: Truth | CycleFault
     injection: CycleInjection
-
-
-_TRUTHS: tuple[Truth | CycleFault, ...] = (*Truth, *CycleFault)
-_AS_TOLD_SHARE = 0.4
-_SLUGGISH_SHARE, _SLUGGISH = 0.1, 4.0
-"""Cells that are told a dead time so many times as long; stiff ones refuse tight holes then."""
-
-
-class Draws:
-    """Draws of one task."""
-
-    def __init__(self, seed: int) -> None:
-        self.rng = np.random.default_rng([seed, 91])
-        drawn = np.random.default_rng([seed, 92]).random()
-        self.sluggish = _SLUGGISH if drawn < _SLUGGISH_SHARE else 1.0
-
-    def between(self, low: float, high: float) -> float:
-        """Uniform."""
-        return float(self.rng.uniform(low, high))
-
-    def magnitude(self, low: float, high: float) -> float:
-        """Uniform in its logarithm."""
-        return exp(self.between(log(low), log(high)))
-
-    def chance(self, share: float) -> bool:
-        """True in so many of all draws."""
-        return bool(self.rng.random() < share)
 
 
 def random_task(seed: int) -> RandomTask:
@@ -95,7 +45,7 @@ def random_task(seed: int) -> RandomTask:
     cell = _cell(draws, shipped_cell("connector" if plug else "pin"), fit, truth)
     if isinstance(truth, CycleFault):
         return RandomTask(cell, truth, injected(cell, truth, seed))
-    return RandomTask(cell, truth, _injection(draws, cell, truth, seed))
+    return RandomTask(cell, truth, injection_of(draws, cell, truth, seed))
 
 
 def _pin(draws: Draws) -> dict[str, Any]:
@@ -237,74 +187,3 @@ def _contacts(depth_mm: float, force_n: float) -> tuple[tuple[float, float], ...
     if force_n == 0.0:
         return ()
     return (0.6 * depth_mm, 0.0), (0.65 * depth_mm, force_n), (depth_mm, 0.75 * force_n)
-
-
-_Made = Callable[[Draws, CycleCell, PegPart], CycleInjection]
-
-
-def _injection(draws: Draws, cell: CycleCell, truth: Truth, seed: int) -> CycleInjection:
-    make = _MAKE.get(truth)
-    return (
-        CycleInjection() if make is None else make(draws, cell, draw_part(cell.scenario, seed, 1))
-    )
-
-
-def _too_deep(draws: Draws, cell: CycleCell, _part: PegPart) -> CycleInjection:
-    fit = nominal_fit(cell.scenario.fit)
-    deeper_m = draws.between(0.6, 4.0) * _MM
-    return CycleInjection(Injected(fit=replace(fit, depth_m=fit.depth_m + deeper_m)))
-
-
-def _no_keyways(_draws: Draws, cell: CycleCell, _part: PegPart) -> CycleInjection:
-    fit = nominal_fit(cell.scenario.fit)
-    keys = None if fit.keys is None else replace(fit.keys, present=False)
-    return CycleInjection(Injected(fit=replace(fit, keys=keys)))
-
-
-def _moved_hole(part: PegPart, hole: RigidTransform) -> CycleInjection:
-    return CycleInjection(part=replace(part, cell_T_hole=part.cell_T_hole * hole))
-
-
-def _beyond(draws: Draws, cell: CycleCell, part: PegPart) -> CycleInjection:
-    task = cell.plan.task
-    away_m = task.search_radius_m + task.fit.bore_radius_m + draws.between(1.0, 5.0) * _MM
-    azimuth = draws.between(-np.pi, np.pi)
-    return _moved_hole(
-        part, displacement([away_m * np.cos(azimuth), away_m * np.sin(azimuth), 0], [0, 0, 0])
-    )
-
-
-def _far_face(draws: Draws, cell: CycleCell, part: PegPart) -> CycleInjection:
-    lower_m = (cell.recipe.base_T_hole.height_uncertainty_mm + draws.between(3.0, 8.0)) * _MM
-    return _moved_hole(part, displacement([0, 0, -lower_m], [0, 0, 0]))
-
-
-def _steep_face(draws: Draws, _cell: CycleCell, part: PegPart) -> CycleInjection:
-    azimuth, tilt = draws.between(-np.pi, np.pi), np.radians(draws.between(4.0, 8.0))
-    return _moved_hole(
-        part, displacement([0, 0, 0], [tilt * np.cos(azimuth), tilt * np.sin(azimuth), 0])
-    )
-
-
-def _part_missing(_draws: Draws, _cell: CycleCell, part: PegPart) -> CycleInjection:
-    return _held(part, 60.0 * _MM)
-
-
-def _held_otherwise(draws: Draws, _cell: CycleCell, part: PegPart) -> CycleInjection:
-    return _held(part, _MM if draws.chance(0.5) else -_MM)
-
-
-def _held(part: PegPart, higher_m: float) -> CycleInjection:
-    shift = RigidTransform.from_translation([0.0, 0.0, higher_m])
-    return CycleInjection(part=replace(part, flange_T_peg=part.flange_T_peg * shift))
-
-
-_MAKE: Mapping[Truth, _Made] = {
-    Truth.TOO_DEEP: _too_deep,
-    Truth.NO_KEYWAYS: _no_keyways,
-    Truth.BEYOND: _beyond,
-    Truth.FAR_FACE: _far_face,
-    Truth.STEEP_FACE: _steep_face,
-    Truth.PART_MISSING: _part_missing,
-    Truth.HELD_OTHERWISE: _held_otherwise,
-}
