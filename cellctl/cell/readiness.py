@@ -36,10 +36,11 @@ def reasons_not_ready(robot: Robot) -> list[str]:
     except CellError as error:
         return [str(error)]
     moves = ["it still moves"] if state.moving else []
-    return moves if state.ready else moves + _why_not(state)
+    return moves + why_not_ready(state)
 
 
-def _why_not(state: RobotState) -> list[str]:
+def why_not_ready(state: RobotState) -> list[str]:
+    """What a controller has reported that keeps its arm from moving, in words; none if ready."""
     checks = {
         "emergency stop": state.emergency_stop,
         "drives off": not state.drives_on,

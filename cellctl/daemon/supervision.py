@@ -10,6 +10,7 @@ from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.disk_watch import DiskWatch
 from cellctl.daemon.loop_watch import watch_loop
 from cellctl.daemon.notify import Watchdog
+from cellctl.daemon.panel_watch import PANEL_PERIOD_S, PanelWatch
 from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors import CellError
 from cellctl.errors.force import GuardNotRealTime
@@ -40,6 +41,7 @@ async def supervise(
         tasks.create_task(plc.failed())
         tasks.create_task(_publish(publisher))
         tasks.create_task(_watch_links(cell, unit))
+        tasks.create_task(_watch_panels(PanelWatch(cell, unit)))
         tasks.create_task(_poll_devices(cell, unit))
         tasks.create_task(_watch_disk(DiskWatch(store, unit)))
         tasks.create_task(watch_loop(vitals.turn))
@@ -62,6 +64,12 @@ async def _watch_links(cell: Cell, unit: UnitController) -> None:
     while True:
         await watch.look()
         await asyncio.sleep(LINK_PERIOD_S)
+
+
+async def _watch_panels(watch: PanelWatch) -> None:
+    while True:
+        await watch.look()
+        await asyncio.sleep(PANEL_PERIOD_S)
 
 
 async def _poll_devices(cell: Cell, unit: UnitController) -> None:

@@ -1,0 +1,71 @@
+"""Watches what the robots report of their panels while nothing moves: a move finds out itself."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from cellctl.cell.devices import LINK_AGE_S, Cell
+from cellctl.cell.readiness import why_not_ready
+from cellctl.errors import CellError
+from cellctl.errors.robot import ControllerFault, RobotNotReady
+from cellctl.interfaces import RobotState
+from cellctl.packml.mode import Mode
+from cellctl.packml.state import State
+from cellctl.runtime.unit import UnitController
+
+PANEL_PERIOD_S = 0.05
+"""Pause between two looks. Controllers report every 20 ms, and an emergency stop whose contacts
+open for 0.1 s is seen. Reading a report takes 0.4 ms of the processor, but in a run the recorder of
+the motion has every report read anyway; without a run nobody looks."""
+
+_MOVES_NEXT = frozenset(
+    {State.RESETTING, State.STARTING, State.EXECUTE, State.UNHOLDING, State.UNSUSPENDING}
+)
+"""States in which the next move may come at any time."""
+_PARKED = frozenset({State.HOLDING, State.HELD, State.SUSPENDING, State.SUSPENDED})
+"""States in which a run is open, and somebody may jog an arm before the unit goes on."""
+
+
+class PanelWatch:
+    """Reports an arm that stands once, at the look after the one that found it."""
+
+    def __init__(self, cell: Cell, unit: UnitController) -> None:
+        self._cell = cell
+        self._unit = unit
+        self._found: Mapping[str, CellError] = {}
+
+    async def look(self) -> None:
+        """Look at every arm; what the last look found goes to the machine.
+
+        One look later, so that a motion which the panel has ended has told its own end first, with
+        its reason. It is told too when the button is released by then.
+        """
+        if self._unit.machine.state not in _MOVES_NEXT | _PARKED:
+            self._found = {}
+            return
+        told, self._found = self._found, self._look()
+        for fault in told.values():
+            await self._unit.machine.fail(fault)
+
+    def _look(self) -> Mapping[str, CellError]:
+        faults = {}
+        for name, robot in self._cell.robots.items():
+            try:
+                state = robot.state(LINK_AGE_S)
+            except CellError:
+                continue  # the watch over the links tells it
+            fault = None if state.moving else self._fault(name, state)
+            if fault is not None:
+                faults[name] = fault
+        return faults
+
+    def _fault(self, name: str, state: RobotState) -> CellError | None:
+        machine = self._unit.machine
+        # Procedures wait for people who jog an arm, and so may whoever holds a run: then key,
+        # drives and errors of the arm belong to whoever stands at its panel.
+        by_itself = machine.state in _MOVES_NEXT and machine.mode is Mode.PRODUCTION
+        # A latch belongs to whoever asked for it: every touch that the guard finds sets one.
+        reasons = why_not_ready(replace(state, stop_latched=False))
+        if not (state.emergency_stop or (by_itself and reasons)):
+            return None
+        kind = ControllerFault if state.error_code else RobotNotReady
+        return kind(f"{name}, while it stood: {', '.join(reasons)}")
