@@ -13,10 +13,8 @@ class StoreUnavailable(RecordsError):
     number = 801
     text = "Run store cannot be opened"
     cause = "Folder missing or not writable, disk full, or a damaged database."
-    remedy = (
-        "Check data_dir in the cell file, or the folder named with --data-dir, and the disk. A "
-        "store that is damaged is restored from its backup."
-    )
+    remedy = "Check data_dir in the cell file, or the folder named with --data-dir, and the "
+    remedy += "disk. A store that is damaged is restored from its backup."
 
 
 class StoreTooNew(StoreUnavailable):
@@ -26,6 +24,15 @@ class StoreTooNew(StoreUnavailable):
     text = "Run store was written by a later version of cellctl"
     cause = "cellctl was replaced by an earlier version after the store had been migrated."
     remedy = "Install the later version again, or go on in another data_dir."
+
+
+class StoreContradictsVersion(StoreUnavailable):
+    """The run store holds what the version that it claims could not have written."""
+
+    number = 826
+    text = "Run store claims an earlier version than its content has"
+    cause = "Somebody has edited store.sqlite, or put parts of two stores together."
+    remedy = "Keep it as evidence: records may be forged. Restore the store from its backup."
 
 
 class StoreHeldByEarlierVersion(StoreUnavailable):
@@ -141,10 +148,8 @@ class NotReplayable(RecordsError):
 
     number = 813
     text = "The run cannot be replayed"
-    cause = (
-        "It was recorded by a version that kept no raw images, or ended before it measured; a file "
-        "of it is missing, or its process cannot replay."
-    )
+    cause = "It was recorded by a version that kept no raw images, or ended before it measured; "
+    cause += "a file of it is missing, or its process cannot replay."
     remedy = "See the detail for what is missing; `cellctl runs verify` finds damaged files."
     reaction = Reaction.WARN
 
@@ -165,10 +170,8 @@ class DiskNearlyFull(RecordsError):
     number = 814
     text = "Too little space on the disk for another record"
     cause = "The run store, or something else on the disk, has grown."
-    remedy = (
-        "Nothing has moved. Make room: move the oldest runs with their store to an archive, or "
-        "give the store a larger disk."
-    )
+    remedy = "Nothing has moved. Make room: move the oldest runs with their store to an archive,"
+    remedy += " or give the store a larger disk."
     reaction = Reaction.STOP
 
 
@@ -197,10 +200,8 @@ class PdfNotMade(RecordsError):
     number = 818
     text = "The report could not be made as PDF"
     cause = "The libraries of the system that lay out text (Pango, HarfBuzz) are not installed."
-    remedy = (
-        "Install them: apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0. The "
-        "report as HTML needs none of them."
-    )
+    remedy = "Install them: apt install libpango-1.0-0 libpangoft2-1.0-0 libharfbuzz-subset0. The "
+    remedy += "report as HTML needs none of them."
     reaction = Reaction.WARN
 
 
@@ -226,10 +227,8 @@ class FleetUnreachable(FleetError):
     number = 831
     text = "Fleet database does not answer"
     cause = "Its server or the network is down, overloaded, or out of disk space."
-    remedy = (
-        "Nothing is lost: the cell keeps its records and delivers them later. See the detail for "
-        "what the server said; `cellctl fleet cells` tries it."
-    )
+    remedy = "Nothing is lost: the cell keeps its records and delivers them later. See the "
+    remedy += "detail for what the server said; `cellctl fleet cells` tries it."
 
 
 class FleetRefused(FleetError):
@@ -246,10 +245,8 @@ class FleetDiffers(FleetError):
 
     number = 833
     text = "Fleet database holds other records of this cell"
-    cause = (
-        "The run store was replaced or restored from a backup, two cells have one name, or "
-        "somebody has changed records here or there."
-    )
+    cause = "The run store was replaced or restored from a backup, two cells have one name, or "
+    cause += "somebody has changed records here or there."
     remedy = (
         "Nothing more is delivered. Compare `cellctl runs verify` with `cellctl fleet verify`; a "
         "store that begins anew needs a new name in the cell file and `cellctl fleet add`."
@@ -291,7 +288,5 @@ class FleetNotNamed(FleetError):
     cause = (
         "`[fleet]` of the cell file or `--store` is missing or wrong, or the password's file is."
     )
-    remedy = (
-        "Give `postgresql://USER@HOST:PORT/DATABASE` as `url` under `[fleet]` or as `--store`, and "
-        "the password in a file or in `CELLCTL_FLEET_PASSWORD`."
-    )
+    remedy = "Give `postgresql://USER@HOST:PORT/DATABASE` as `url` under `[fleet]` or as "
+    remedy += "`--store`, and the password in a file or in `CELLCTL_FLEET_PASSWORD`."

@@ -1,17 +1,22 @@
-"""The hash chain, which shows whether anything that was sealed has been changed.
+"""The hash chain, which shows what was changed of that which was sealed.
 
-Each entry hashes the content it seals together with the entry before it, so a change, a removal
-or an insertion breaks every later hash. The head, length and newest hash, lies in a table of its
-own, so that a chain whose newest entries were removed with what they sealed is found out too. A
-chain that somebody recomputes as a whole, head included, cannot be found out from the store alone:
-every report prints the head, and ``cellctl runs verify --head`` compares it with a printed one.
+Each entry hashes the content it seals together with the entry before it. What ``problems`` names,
+as long as nobody recomputes the hashes: a sealed row that was changed or removed, a row of a sealed
+kind that was added, an entry that was changed, removed or added, and, by the head, entries that
+were cut off the end. The head, length and newest hash, lies in a table of its own.
+
+What the store alone cannot show, because whoever may write to it can recompute every hash: a chain
+that was made anew from some entry on, and a tail that was cut off together with a head set back.
+Both show only against a head that lies elsewhere: every report prints it, and ``cellctl runs verify
+--head`` holds the store against a printed one. Nor can it show what was done to a row before it was
+sealed: a run is sealed when it is closed, and what schema 1 and 2 did not seal, by the migration.
 
 The content of a run depends on the schema that wrote it (``runs.record_schema``): an old run is
 sealed and verified over the tables of its own time, which a migration leaves as they are. That
 column needs no seal of its own, since with another value the content is another one too.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from datetime import datetime
 from typing import Any
 
@@ -59,10 +64,11 @@ def head(session: Session) -> LedgerHead:
     return LedgerHead(0, GENESIS) if row is None else LedgerHead(row.length, row.hash)
 
 
-def seal_all(session: Session, time: datetime) -> None:
-    """Seal everything that is not sealed yet; for stores of earlier versions."""
+def seal_unsealed(session: Session, time: datetime, kinds: Iterable[str]) -> None:
+    """Seal everything of these kinds that is not sealed yet, and write the head down; for stores
+    of earlier versions."""
     sealed = {(row.kind, _subject(row)) for row in session.scalars(select(LedgerRow))}
-    for kind in KINDS:
+    for kind in kinds:
         for key in _keys(session, kind):
             if (kind, key) not in sealed:
                 _append(session, kind, key, time)

@@ -1,8 +1,7 @@
 """Older stores are brought to the schema of today when they are opened.
 
-A migration only adds tables and columns. What has been sealed stays as it is (``schema_1``), and a
-daemon of the earlier version that still runs on the store goes on writing and sealing runs of its
-own schema: the defaults below are for its rows.
+A migration only adds tables and columns. What has been sealed stays as it is (``schema_1``). A
+store that holds what its version could not have is refused (``claimed_version``).
 """
 
 import os
@@ -17,10 +16,12 @@ from sqlalchemy.orm import Session
 from cellctl.atomic_files import sync_folder
 from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
-from cellctl.records.database.ledger import seal_all
+from cellctl.records.database.claimed_version import require_claimed
+from cellctl.records.database.ledger import seal_unsealed
 from cellctl.records.database.schema import Base
 from cellctl.records.database.schema_1.tables import PROCESS
 from cellctl.records.database.schema_version import SCHEMA_VERSION
+from cellctl.records.database.sealed import SEALED_FROM_3_ON
 
 
 def bring_up_to_date(connection: Connection, file: Path) -> None:
@@ -28,7 +29,7 @@ def bring_up_to_date(connection: Connection, file: Path) -> None:
 
     Called inside a transaction that holds the write lock; nothing is changed when it is rolled
     back. Before an older store is changed, its copy is on the disk as ``backup_of(file, version)``.
-    Raises ``StoreTooNew``, ``OSError`` or ``sqlite3.Error``.
+    Raises ``StoreTooNew``, ``StoreContradictsVersion``, ``OSError`` or ``sqlite3.Error``.
     """
     version = schema_version(connection)
     # Never opened by guessing: a later version may mean other things by the same columns.
@@ -36,6 +37,7 @@ def bring_up_to_date(connection: Connection, file: Path) -> None:
         raise StoreTooNew(f"{file} has schema {version}, this version knows {SCHEMA_VERSION}")
     if version == SCHEMA_VERSION:
         return
+    require_claimed(connection, file, version)
     if version == 0:
         Base.metadata.create_all(connection)
     else:
@@ -92,14 +94,15 @@ def _from_1_to_2(connection: Connection) -> None:
 def _from_2_to_3(connection: Connection) -> None:
     """Seals for everything that an auditor asks for, and the head of the chain.
 
-    What earlier versions have not sealed is sealed as it is found. A change that somebody made to
-    it before is not found out; from here on every change is.
+    What schema 1 and 2 did not seal is sealed as it is found: whether somebody has changed it
+    before, or added it, nobody can tell. Runs and gauges they did seal, so that one without a seal
+    keeps none, and is named by every verification.
     """
     for table, column in (("gauges", "gauge_id VARCHAR"), ("ledger", "name VARCHAR")):
         connection.execute(text(f"ALTER TABLE {table} ADD COLUMN {column}"))
     Base.metadata.create_all(connection)
     with Session(connection, join_transaction_mode="rollback_only") as session:
-        seal_all(session, utc_now())
+        seal_unsealed(session, utc_now(), SEALED_FROM_3_ON)
         session.flush()
 
 

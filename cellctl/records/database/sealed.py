@@ -123,3 +123,5 @@ KINDS: Mapping[str, SealedKind] = {
 }
 """The kinds by the name in the column ``kind``. Names and contents never change: stores are sealed
 with them."""
+SEALED_FROM_3_ON = (ALARM, ACKNOWLEDGEMENT, CALIBRATION, INVALIDATION, AUDIT, VALUE)
+"""Kinds whose rows earlier versions have written without a seal."""

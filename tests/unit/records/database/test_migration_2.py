@@ -4,13 +4,16 @@ import json
 import shutil
 import sqlite3
 from collections.abc import Iterator
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 
 import pytest
 
-from cellctl.records import RunStore
+from cellctl.errors.records import StoreContradictsVersion
+from cellctl.records import RunResult, RunStore
 from cellctl.records.database.migration import backup_of
+from tests.unit.records.conftest import start
 
 OLD = Path(__file__).parents[3] / "data" / "store-v2"
 
@@ -57,3 +60,78 @@ def test_what_had_no_seal_gets_one(store: RunStore, old: Path) -> None:
 def test_the_open_run_of_before_is_closed(store: RunStore) -> None:
     assert store.mark_interrupted() == [3]
     assert store.verify() == []
+
+
+def execute(folder: Path, *statements: str) -> None:
+    with closing(sqlite3.connect(folder / "store.sqlite")) as connection:
+        for statement in statements:
+            connection.execute(statement)
+        connection.commit()
+
+
+FORGED = """
+INSERT INTO runs
+SELECT 99, process, 'FORGED', recipe_id, recipe_name, recipe_hash, mode, operator, software,
+config_hash, simulated, calibration_ids, started, ended, result, fault_number, fault, record_schema
+FROM runs WHERE number = 1
+"""
+AS_2 = (
+    "UPDATE runs SET record_schema = 2",
+    "ALTER TABLE gauges DROP COLUMN gauge_id",
+    "ALTER TABLE ledger DROP COLUMN name",
+    "DROP TABLE ledger_head",
+)
+"""What makes a store of schema 3 look like one of schema 2, but for its ledger."""
+
+
+@pytest.fixture
+def of_today(tmp_path: Path) -> Path:
+    store = RunStore(tmp_path / "today")
+    run = start(store)
+    store.add_alarm(run, 202, "F202")
+    store.close_run(run, RunResult.GOOD)
+    store.close()
+    return store.path
+
+
+@pytest.mark.parametrize("claimed", [0, 1, 2])
+def test_a_store_of_today_that_claims_an_earlier_schema_is_refused(
+    of_today: Path, claimed: int
+) -> None:
+    execute(of_today, f"PRAGMA user_version = {claimed}", FORGED)
+    with pytest.raises(StoreContradictsVersion, match=r"ledger_head\.length"):
+        RunStore(of_today)
+    with closing(sqlite3.connect(of_today / "store.sqlite")) as connection:
+        assert connection.execute("PRAGMA user_version").fetchone() == (claimed,)
+        assert connection.execute("SELECT * FROM ledger WHERE subject = 99").fetchone() is None
+
+
+def test_kinds_that_the_claimed_schema_could_not_have_are_named(of_today: Path) -> None:
+    execute(of_today, "PRAGMA user_version = 2", FORGED, *AS_2)
+    with pytest.raises(
+        StoreContradictsVersion, match="kind alarm, ledger entries of the kind open"
+    ):
+        RunStore(of_today)
+
+
+def test_a_run_of_a_later_schema_is_named(old: Path) -> None:
+    execute(old, "UPDATE runs SET record_schema = 3 WHERE number = 2")
+    with pytest.raises(StoreContradictsVersion, match="run 2 of a later schema"):
+        RunStore(old)
+
+
+def test_a_run_that_was_forged_into_an_old_store_gets_no_seal(old: Path) -> None:
+    execute(old, FORGED)
+    store = RunStore(old)
+    assert store.verify() == ["run 99 is closed but not sealed"]
+    store.close()
+
+
+def test_a_gauge_that_was_forged_into_an_old_store_gets_no_seal(old: Path) -> None:
+    execute(
+        old,
+        "INSERT INTO gauges SELECT 99, run, time, hole, 6.0, source FROM gauges WHERE id = 1",
+    )
+    store = RunStore(old)
+    assert store.verify() == ["gauge 99 is not sealed"]
+    store.close()

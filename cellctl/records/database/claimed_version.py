@@ -1,0 +1,53 @@
+"""Holds the version that a store claims against what is in it, before a migration trusts it.
+
+A migration seals what earlier versions did not seal. A store of today that is made to look old
+would have whatever was added to it sealed with the rest.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from sqlalchemy import Connection, inspect, text
+
+from cellctl.errors.records import StoreContradictsVersion
+from cellctl.records.database.sealed import GAUGE, RUN
+
+_CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {
+    1: (("runs", "number"), ("ledger", "hash")),
+    2: (
+        ("runs", "record_schema"),
+        *((name, "id") for name in ("phases", "figures", "poses", "passes", "documents")),
+    ),
+    3: (("ledger", "name"), ("gauges", "gauge_id"), ("ledger_head", "length")),
+}
+"""Columns by the schema that brought them."""
+_FIRST_KINDS = frozenset({RUN, GAUGE})
+"""All that schema 1 and 2 have sealed."""
+
+
+def require_claimed(connection: Connection, file: Path, version: int) -> None:
+    """Raise ``StoreContradictsVersion`` when a store holds what its version could not have."""
+    found = list(_contradictions(connection, version))
+    if found:
+        raise StoreContradictsVersion(f"{file} says schema {version} and has {', '.join(found)}")
+
+
+def _contradictions(connection: Connection, version: int) -> Iterator[str]:
+    tables = inspect(connection)
+    has = {
+        name: {one["name"] for one in tables.get_columns(name)} for name in tables.get_table_names()
+    }
+    for schema, columns in _CAME_WITH.items():
+        if schema > version:
+            yield from (f"{table}.{one}" for table, one in columns if one in has.get(table, ()))
+    if version < 1:
+        return
+    if "record_schema" in has.get("runs", ()):
+        later = text("SELECT number FROM runs WHERE record_schema > :version ORDER BY number")
+        for number in connection.execute(later, {"version": version}).scalars():
+            yield f"run {number} of a later schema"
+    if version < 3:
+        kinds = connection.execute(text("SELECT DISTINCT kind FROM ledger ORDER BY kind")).scalars()
+        yield from (
+            f"ledger entries of the kind {kind}" for kind in kinds if kind not in _FIRST_KINDS
+        )
