@@ -15,6 +15,7 @@ from cellctl.config.checks.arms.tables import table_issues, table_remarks
 from cellctl.config.checks.cross_checks import unpermitted
 from cellctl.config.checks.plausible.findings import plausibility_issues
 from cellctl.config.checks.plausible.mounted import mounted_remarks
+from cellctl.config.checks.plausible.resting import resting_issues
 from cellctl.config.checks.remarks import cell_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import bad_devices, examine, placed, unless_named
@@ -62,6 +63,8 @@ def _implausible(cell: CellConfig, path: Path, found: list[ConfigIssue]) -> Iter
     of_cell += table_issues(cell, bad)
     of_cell += box_issues(cell, stated_bases(path), bad)
     yield from of_cell
+    # Not counted to what is wrong with a device: as often the box of the zone is wrong.
+    yield from resting_issues(cell, bad)
     bad |= bad_devices(of_cell)
     # A device or a recipe that is wrong itself would be named a second time, by all that use it.
     if bad & {".".join(device.split(".")[:2]) for device in cell.devices()}:

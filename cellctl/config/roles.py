@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from cellctl import plugins
 from cellctl.config.cell import CellConfig
-from cellctl.config.devices import GROUPS, RobotConfig
+from cellctl.config.devices import GROUPS
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.errors.config import UnknownDriver
@@ -41,6 +41,8 @@ class Role:
     """Its task in the process, for messages and documents."""
     poses: tuple[str, ...] = ()
     """Taught poses that the robot must have."""
+    rests_at: tuple[str, ...] = ()
+    """Those of them at which it stays while others work: clear of every space that arms share."""
     carried: bool = False
     """Whether a camera must be carried by a robot."""
 
@@ -71,6 +73,14 @@ def lacking_roles(cell: CellConfig, roles: Mapping[str, Role]) -> Iterator[Confi
         yield from _lacking_for(cell, role, name, name)
 
 
+def arm_of(cell: CellConfig, role: Role, device: str) -> str | None:
+    """The robot that is the device of a role, or that carries it; None where there is none."""
+    if role.section == "robots":
+        return device
+    # A camera has no poses of its own: what is taught for it belongs to the robot that carries it.
+    return getattr(cell.section(role.section).get(device), "carried_by", None)
+
+
 def _lacking_for(cell: CellConfig, role: Role, device: str, key: str) -> Iterator[ConfigIssue]:
     found = cell.section(role.section).get(device)
     if found is None:
@@ -83,9 +93,8 @@ def _lacking_for(cell: CellConfig, role: Role, device: str, key: str) -> Iterato
     carrier = getattr(found, "carried_by", None)
     if role.carried and carrier is None:
         yield ConfigIssue(f"{role.section}.{device}.carried_by", "(missing)", "a robot carries it")
-    robot = found if isinstance(found, RobotConfig) else cell.robots.get(carrier or "")
-    # A camera has no poses of its own: what is taught for it belongs to the robot that carries it.
-    place = device if isinstance(found, RobotConfig) else carrier
+    place = arm_of(cell, role, device)
+    robot = cell.robots.get(place or "")
     for pose in role.poses if robot is not None else ():
         if robot is not None and pose not in robot.poses_deg:
             allowed = f"a taught pose, in degrees ({role.text})"

@@ -23,6 +23,7 @@ ROLES: Mapping[str, Role] = {
         Robot,
         "carries gripper, force sensor and camera I",
         (HOME, TRAY_LOOK, INSPECT_PLUG, SOCKET_LOOK, BOARD_LOOK, BOARD_SHOW),
+        rests_at=(HOME,),
     ),
     FORCE: Role(FtSensor, "feels the plug, between the flange of the arm and the gripper"),
     CAMERA_1: Role(Camera, "camera I: looks at tray and socket", carried=True),

@@ -11,10 +11,15 @@ HOME, DECK_MEASURE = "home", "deck_measure"
 MEASURING, RETRACTED = "measuring", "retracted"
 """Poses of a robot that carries a head: over the station; out of the way."""
 
+
+def _head(text: str) -> Role:
+    return Role(StereoCamera, text, (MEASURING, RETRACTED), (RETRACTED,), carried=True)
+
+
 ROLES: Mapping[str, Role] = {
-    MAIN: Role(Robot, "carries the deck", (HOME, DECK_MEASURE)),
+    MAIN: Role(Robot, "carries the deck", (HOME, DECK_MEASURE), rests_at=(HOME,)),
     FORCE: Role(FtSensor, "feels the deck, between the flange of the main robot and its gripper"),
-    HEAD_1: Role(StereoCamera, "head I over the station", (MEASURING, RETRACTED), carried=True),
-    HEAD_2: Role(StereoCamera, "head II over the station", (MEASURING, RETRACTED), carried=True),
+    HEAD_1: _head("head I over the station"),
+    HEAD_2: _head("head II over the station"),
     TRACKER: Role(TargetTracker, "large-field head over the cell"),
 }

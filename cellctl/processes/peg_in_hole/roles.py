@@ -13,6 +13,11 @@ ABOVE_HOLE = "above_hole"
 """The tip over the believed place of the hole, clear of its face, in the attitude of insertion."""
 
 ROLES: Mapping[str, Role] = {
-    ARM: Role(StreamingRobot, "carries the peg and follows a stream", (HOME, ABOVE_HOLE)),
+    ARM: Role(
+        StreamingRobot,
+        "carries the peg and follows a stream",
+        (HOME, ABOVE_HOLE),
+        rests_at=(HOME,),
+    ),
     FORCE: Role(FtSensor, "feels the peg, between the flange of the arm and the gripper"),
 }

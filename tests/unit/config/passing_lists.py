@@ -239,10 +239,12 @@ LISTS = (
             *_at("zones.beside_head_1.robots.main.max_mm", "1", "/10"),
             *_at("zones.beside_head_2.robots.main.min_mm", "1", "/10"),
         ),
+        remarked=None,
     ),
     Kind(
         "a zone that is narrower on a side of a head's arm to which that arm never comes",
         _at("zones.*.robots.aux_?.max_mm", "1", "/10"),
+        remarked=True,
     ),
     Kind(
         "where the target board hangs: its targets are looked for in all of the picture",

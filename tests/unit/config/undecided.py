@@ -1,6 +1,6 @@
 """Edits that no check can call wrong, each with its reason."""
 
-from tests.unit.config.between_arms import LOW_BOX
+from tests.unit.config.between_arms import LOW_BOX, UNLIKE_BOX
 from tests.unit.config.mistake import Mistake, Undecided, deck, drawn
 
 _BOTH = ("deck.toml", "frame.toml")
@@ -11,6 +11,7 @@ def _real(old: str, new: str, key: str, said: str) -> Mistake:
 
 
 UNDECIDED = (
+    Undecided(UNLIKE_BOX, "a smaller box than that of the other head: its surroundings may differ"),
     Undecided(LOW_BOX, "a box that reaches below the arm's feet: it may stand on a pedestal"),
     Undecided(
         deck(
@@ -119,15 +120,6 @@ UNDECIDED = (
             "",
         ),
         "two ports of one controller exchanged: which program listens where only --connect finds",
-    ),
-    Undecided(
-        deck(
-            'retreat = ["main", "aux_1"]',
-            'retreat = ["aux_1", "main"]',
-            "zones.beside_head_1.retreat",
-            "",
-        ),
-        "another order of leaving a zone: the cell decides who can go first",
     ),
     Undecided(
         Mistake(

@@ -14,7 +14,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.zones import ZoneConfig
+from cellctl.config.zones import ZoneConfig, ZoneShare
 from cellctl.geometry.box import Box
 from cellctl.geometry.joint_path import joint_path
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
@@ -23,6 +23,9 @@ from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, HOME, MAIN, ME
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 
 _SIDES = (-1.0, 1.0)
+_ROOM_MM = 100.0
+"""What every box has beyond the places that are meant (docs/commissioning.md, "Zones", 3): an arm
+goes on after a stop, and another one may come as near as the box allows."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,15 +42,13 @@ class _Station:
 
     def head_m(self, carrier: str) -> Array | None:
         """The flange of a head's arm at its measuring pose, in the base of the main arm."""
-        driver, settings = robot_driver(self.cell.robots[carrier])
-        kinematics = driver.forward_kinematics(settings)
-        if kinematics is None or not {self.main, carrier} <= self.bases.keys():
+        own_m = _measuring_m(self.cell, carrier)
+        if own_m is None or not {self.main, carrier} <= self.bases.keys():
             return None
         main_T_other = pose_from_xyzabc(self.bases[self.main]).inv() * pose_from_xyzabc(
             self.bases[carrier]
         )
-        joints_rad = np.radians(self.cell.robots[carrier].poses_deg[MEASURING])
-        return np.asarray((main_T_other * kinematics(joints_rad)).translation)
+        return np.asarray(main_T_other.apply(own_m))
 
 
 def shared_zone_issues(
@@ -73,7 +74,7 @@ def shared_zone_issues(
         held = {
             name: zone
             for name, zone in shared.items()
-            if MEASURING in taught_in_zone(cell.robots[carrier], zone.robots[carrier])
+            if MEASURING in taught_in_zone(cell.robots[carrier], _within(zone.robots[carrier]))
         }
         if not shared:
             allowed = (
@@ -82,10 +83,62 @@ def shared_zone_issues(
             )
             yield ConfigIssue(f"robots.{carrier}", f"in no zone with {main}", allowed)
         elif not held:
-            allowed = f"a box that holds its pose {MEASURING}, at which it stands over the station"
+            allowed = (
+                f"a box that holds its pose {MEASURING}, at which it stands over the station, with "
+                f"{_ROOM_MM:g} mm more on every side: the arm goes on after a stop"
+            )
             yield _box_issue(shared, carrier, allowed)
         else:
             yield from _left_out(station, carrier, held)
+
+
+def _within(share: ZoneShare) -> ZoneShare:
+    """A share without its room on every side; of a box that has no more than this, the middle."""
+    middle = [(low + high) / 2 for low, high in zip(share.min_mm, share.max_mm, strict=True)]
+    return share.model_copy(
+        update={
+            "min_mm": tuple(np.minimum(np.add(share.min_mm, _ROOM_MM), middle).tolist()),
+            "max_mm": tuple(np.maximum(np.subtract(share.max_mm, _ROOM_MM), middle).tolist()),
+        }
+    )
+
+
+def unlike_box_remarks(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
+    """Boxes that differ although their heads measure from one place, each in its arm's own base."""
+    main = recipe.device(MAIN)
+    carriers = [cell.stereo_cameras[recipe.device(role)].carried_by for role in (HEAD_1, HEAD_2)]
+    shares = {
+        carrier: (f"zones.{name}.robots.{carrier}", zone.robots[carrier])
+        for carrier in carriers
+        for name, zone in cell.zones.items()
+        if carrier is not None and {main, carrier} <= zone.robots.keys()
+    }
+    places_m = [place_m for name in shares if (place_m := _measuring_m(cell, name)) is not None]
+    if len(places_m) < len(carriers):
+        return
+    (one, first), (other, second) = shares.values()
+    apart_m = np.linalg.norm(places_m[0] - places_m[1])
+    differ_mm = np.abs(np.subtract(_corners(first), _corners(second)))
+    if apart_m < _ROOM_MM * MM < np.max(differ_mm) * MM:
+        said = (
+            f"differs by {np.max(differ_mm):.0f} mm from {one}, whose head measures from the same "
+            "place in the base of its arm: right if other things stand around it"
+        )
+        yield ConfigIssue(other, f"{list(second.min_mm)} to {list(second.max_mm)}", said)
+
+
+def _corners(share: ZoneShare) -> tuple[float, ...]:
+    return (*share.min_mm, *share.max_mm)
+
+
+def _measuring_m(cell: CellConfig, carrier: str) -> Array | None:
+    """The flange of a head's arm at its measuring pose, in its own base."""
+    driver, settings = robot_driver(cell.robots[carrier])
+    kinematics = driver.forward_kinematics(settings)
+    if kinematics is None:
+        return None
+    joints_rad = np.radians(cell.robots[carrier].poses_deg[MEASURING])
+    return np.asarray(kinematics(joints_rad).translation)
 
 
 def _left_out(

@@ -16,6 +16,7 @@ from cellctl.processes.deck_to_frame.checks.plausible.stored import (
     same_joints,
     stored_record,
 )
+from cellctl.processes.deck_to_frame.checks.shared_zones import unlike_box_remarks
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME, PAYLOAD_NAME
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN, MEASURING
@@ -41,6 +42,7 @@ def recipe_remarks(
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
     yield from _taught_again(cell, recipe, folder)
+    yield from unlike_box_remarks(cell, recipe)
     yield from tool_floor_remarks(cell, recipe.device(MAIN), recipe.flange_T_deck)
 
 

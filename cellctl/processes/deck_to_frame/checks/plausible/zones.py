@@ -1,18 +1,18 @@
 """Holds the boxes of zones against the places to which this process brings its arms."""
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from itertools import combinations
 
 import numpy as np
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.zones import ZoneConfig
 from cellctl.geometry.box import Box
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MAIN, MEASURING, RETRACTED
+from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, MAIN
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 
 _POINTS = 21
@@ -22,10 +22,11 @@ _POINTS = 21
 def zone_use_issues(
     cell: CellConfig, recipe: DeckRecipe, settings: DeckSettings
 ) -> Iterator[ConfigIssue]:
-    """Boxes into which their arm never comes, and heads that would withdraw into a zone."""
+    """Boxes into which their arm never comes, and orders of leaving that no Reset goes by."""
     main = recipe.device(MAIN)
     heads = {cell.stereo_cameras[recipe.device(role)].carried_by for role in (HEAD_1, HEAD_2)}
     for zone, config in cell.zones.items():
+        yield from _leaving_issues(zone, config, main, heads)
         for name, share in config.robots.items():
             if name not in heads | {main} or name not in cell.robots:
                 continue
@@ -45,15 +46,21 @@ def zone_use_issues(
                 )
                 value = f"{list(share.min_mm)} to {list(share.max_mm)}"
                 yield ConfigIssue(f"zones.{zone}.robots.{name}", value, allowed)
-            elif name in heads:
-                inside = taught_in_zone(cell.robots[name], share)
-                if RETRACTED in inside and MEASURING not in inside:
-                    joints = str(list(cell.robots[name].poses_deg[RETRACTED]))
-                    allowed = (
-                        f"a place outside of zones.{zone}, in which {MEASURING} does not lie and "
-                        f"this pose does: did you exchange them?"
-                    )
-                    yield ConfigIssue(f"robots.{name}.poses_deg.{RETRACTED}", joints, allowed)
+
+
+def _leaving_issues(
+    zone: str, config: ZoneConfig, main: str, heads: Collection[str | None]
+) -> Iterator[ConfigIssue]:
+    """Heads that leave before the main robot, which Reset and every procedure bring home first."""
+    order = config.retreat
+    first = order.index(main) if main in order else len(order)
+    early = [name for name in order[:first] if name in heads]
+    if main in config.robots and early:
+        allowed = (
+            f"{main} before {', '.join(early)}: Reset and the procedures bring {main} home before "
+            "they move a head, so it would wait here for a head that stays (F314)"
+        )
+        yield ConfigIssue(f"zones.{zone}.retreat", str(list(order)), allowed)
 
 
 def _places_mm(cell: CellConfig, name: str, settings: DeckSettings | None) -> Array:
