@@ -32,9 +32,10 @@ class SerialMadeBefore(LineError):
 
     number = 742
     text = "A part with this serial number was finished before"
-    cause = "The number was mistyped or read from another part, or the part is reworked."
+    cause = "The number was mistyped, read from another part or left from the part before; or the "
+    cause += "part is reworked, or several others are joined to it."
     remedy = "Compare the number with the part. If it is wrong, stop the run and start it with the "
-    remedy += "right one; acknowledge the alarm for a part that is reworked."
+    remedy += "right one; if it is right, acknowledge the alarm."
     reaction = Reaction.WARN
 
 

@@ -14,28 +14,18 @@ from cellctl.clock import utc_now
 from cellctl.records.database import ledger, reading, rows, schema, sealed
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.database.sessions import LOCK_WAIT_S, Database
+from cellctl.records.database.stored_records import LINE_SEQ, StoredRecords
 from cellctl.records.entered.gauges import require_gauge, require_plausible
-from cellctl.records.entries import (
-    Alarm,
-    AuditEntry,
-    Calibration,
-    RunDetail,
-    RunHead,
-    RunRecord,
-    RunResult,
-)
+from cellctl.records.entries import RunDetail, RunResult
 from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.files.mcap_reading import has_messages
 from cellctl.records.files.unfinished import MOTION, UnfinishedRecordings
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead
-from cellctl.records.trend import Sample
-
-_LINE_SEQ = "line_seq"
 
 
-class RunStore:
+class RunStore(StoredRecords):
     """One writer: the daemon. Commands of the operator may add gauge results beside it."""
 
     def __init__(
@@ -200,11 +190,6 @@ class RunStore:
                 ledger.seal(session, sealed.ACKNOWLEDGEMENT, row, now)
             return len(found)
 
-    def active_alarms(self) -> list[Alarm]:
-        """Alarms nobody has acknowledged, the oldest first."""
-        with self._database.read() as session:
-            return [rows.to_entry(row, Alarm) for row in session.scalars(rows.active_alarm_rows())]
-
     def add_calibration(self, stored: StoredCalibration) -> None:
         """Keep a calibration for good; the same one again is no change."""
         row = rows.calibration(stored)
@@ -223,16 +208,6 @@ class RunStore:
                 row.invalidated, row.invalidated_reason = now, reason
                 ledger.seal(session, sealed.INVALIDATION, row, now)
 
-    def newest_time(self) -> datetime | None:
-        """When the newest record was written; None in an empty store."""
-        with self._database.read() as session:
-            return reading.newest_time(session)
-
-    def calibrations(self) -> list[Calibration]:
-        """Every calibration that was ever stored, newest first."""
-        with self._database.read() as session:
-            return reading.calibrations(session)
-
     def audit(self, actor: str, action: str, detail: Mapping[str, Any] | None = None) -> None:
         """Append to the audit log."""
         row = schema.AuditRow(time=utc_now(), actor=actor, action=action, detail=detail or {})
@@ -240,49 +215,11 @@ class RunStore:
             session.add(row)
             ledger.seal(session, sealed.AUDIT, row, row.time)
 
-    def audit_log(self) -> list[AuditEntry]:
-        """Every entry of the audit log, oldest first."""
-        with self._database.read() as session:
-            return reading.audit_log(session)
-
     def note_line_seq(self, seq: int) -> None:
         """Remember the last command number of the line, before the command is obeyed."""
         with self._database.write() as session:
-            row = session.merge(schema.ValueRow(name=_LINE_SEQ, value=seq))
+            row = session.merge(schema.ValueRow(name=LINE_SEQ, value=seq))
             ledger.seal(session, sealed.VALUE, row, utc_now())
-
-    def line_seq(self) -> int | None:
-        """The last command number of the line before this start."""
-        with self._database.read() as session:
-            row = session.get(schema.ValueRow, _LINE_SEQ)
-            return None if row is None else row.value
-
-    def runs(self, limit: int = 50, serial: str | None = None) -> list[RunHead]:
-        """The newest runs, newest first; of one serial number if given."""
-        with self._database.read() as session:
-            return reading.run_heads(session, limit, serial)
-
-    def good_parts(self) -> int:
-        """Runs of Production that ended with a good part."""
-        with self._database.read() as session:
-            return reading.good_parts(session)
-
-    def figure_keys(self) -> list[str]:
-        """Keys of all figures that any run has."""
-        with self._database.read() as session:
-            return reading.figure_keys(session)
-
-    def figure_history(
-        self, key: str, recipe_id: int | None = None, limit: int = 200
-    ) -> tuple[list[Sample], str]:
-        """A figure in each of the newest finished runs of Production, oldest first; its unit."""
-        with self._database.read() as session:
-            return reading.figure_history(session, key, recipe_id, limit)
-
-    def run(self, number: int) -> RunRecord:
-        """One run with everything; raises ``RunUnknown``."""
-        with self._database.read() as session:
-            return reading.read_run(session, number)
 
     def verify(self, printed: LedgerHead | None = None) -> list[str]:
         """Whether anything that is sealed was changed: the problems, none if all is well.

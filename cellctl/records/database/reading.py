@@ -42,6 +42,7 @@ from cellctl.records.entries import (
     RunResult,
 )
 from cellctl.records.files.artefacts import ArtefactFolder
+from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.seals import Seal
 from cellctl.records.trend import Sample
 
@@ -60,11 +61,18 @@ def audit_log(session: Session) -> list[AuditEntry]:
     return [to_entry(row, AuditEntry) for row in found]
 
 
-def run_heads(session: Session, limit: int, serial: str | None) -> list[RunHead]:
-    """The newest runs, newest first; of one serial number if given."""
+def run_heads(
+    session: Session, limit: int, serial: str | None, mate_serial: str | None
+) -> list[RunHead]:
+    """The newest runs, newest first; of one serial number, or joined to one, if given."""
     query = select(RunRow).order_by(RunRow.number.desc()).limit(limit)
     if serial is not None:
         query = query.where(RunRow.serial == serial)
+    if mate_serial is not None:
+        named = func.json_extract(DocumentRow.content, f"$.{MATE_SERIAL}") == mate_serial
+        # By the key first: content is read of the few rows that are left.
+        joined = select(DocumentRow.run).where(DocumentRow.key == PARTS, named)
+        query = query.where(RunRow.number.in_(joined))
     return [to_entry(row, RunHead) for row in session.scalars(query)]
 
 

@@ -1,11 +1,12 @@
-"""Looks whether a part with this serial number was finished before, and warns of it."""
+"""Looks whether parts with these serial numbers were finished before, and warns of it."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 
 from cellctl.clock import utc_now
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.line import SerialMadeBefore
+from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import PRODUCTION, RunHead, RunResult
 from cellctl.records.store import RunStore
@@ -20,25 +21,36 @@ bound only keeps a number that stands for "unknown" from having all its runs rea
 
 
 async def warn_of_earlier_part(
-    store: AsyncRunStore, recipe: Recipe, serial: str, run: int, warn: Warn
+    store: AsyncRunStore, recipe: Recipe, command: UnitCommand, run: int, warn: Warn
 ) -> None:
-    """Warn when the store has a finished run of this recipe with the same serial number.
+    """Warn when the store has a finished run of this recipe with one of the same serial numbers.
 
-    ``run`` is the open one. The run goes on: whoever reworks a part knows. Raises the faults of the
-    store.
+    ``command`` names the part, and perhaps the one that it is joined to: a line that does not write
+    that number anew leaves the one of the part before. ``run`` is the open run. It goes on: whoever
+    reworks a part knows. Raises the faults of the store.
     """
-    runs = await store.do(RunStore.runs, _LOOKED_AT, serial)
-    found = [head for head in runs if head.number != run and _finished(head, recipe)]
-    if not found:
-        return
-    newest = found[0]
+    found = {command.serial: await store.do(RunStore.runs, _LOOKED_AT, command.serial)}
+    if mate := command.mate_serial:
+        joined = await store.do(RunStore.runs, _LOOKED_AT, mate_serial=mate)
+        found[f"joined to {mate}"] = joined
+    facts = [
+        f"{what} {earlier}"
+        for what, runs in found.items()
+        if (earlier := _earlier([head for head in runs if head.number != run], recipe))
+    ]
+    if facts:
+        await warn(SerialMadeBefore("; ".join(facts)))
+
+
+def _earlier(runs: Sequence[RunHead], recipe: Recipe) -> str:
+    """Words for the finished runs of a recipe, the newest by its number; empty without one."""
+    finished = [head for head in runs if _finished(head, recipe)]
+    if not finished:
+        return ""
+    newest, more = finished[0], len(finished) - 1
     ended = newest.ended or utc_now()
-    more = f" and {len(found) - 1} more" if len(found) > 1 else ""
-    await warn(
-        SerialMadeBefore(
-            f"{serial} in run {newest.number}{more}, {newest.result}, {ended:%Y-%m-%d %H:%M} UTC"
-        )
-    )
+    others = f" and {more} more" if more else ""
+    return f"in run {newest.number}{others}, {newest.result}, {ended:%Y-%m-%d %H:%M} UTC"
 
 
 def _finished(head: RunHead, recipe: Recipe) -> bool:

@@ -78,7 +78,7 @@ class ProductionJob(Job):
         run = await self._record.open(self._recipe, mode, prepared.stored)
         if mode == PRODUCTION:
             store = self._process.services.store
-            await warn_of_earlier_part(store, self._recipe, self.serial, run, self._warn)
+            await warn_of_earlier_part(store, self._recipe, self._command, run, self._warn)
         context = RunContext(self._recorder, self._safe_point, self._interruption)
         opened = self._process.open(prepared, context)
         self._begun = opened, await self._process.begin(opened)
