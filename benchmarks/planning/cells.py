@@ -45,7 +45,7 @@ class RandomCell:
 
         Raises ``PlaceUnreachable`` where an arm does not reach such a pose.
         """
-        scene = read_model(load_cell(CELL_FILE), model_path(CELL_FILE))
+        scene = read_model(load_cell(CELL_FILE), model_path(CELL_FILE), CELL_FILE.parent)
         arms = {name: self._arm(arm) for name, arm in scene.arms.items()}
         robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
         solids = (*(self._changed(solid) for solid in scene.solids), *self.obstacles)

@@ -44,8 +44,8 @@ def prediction(scenario: DeckScenario) -> PredictedPose:
 
     The drawing allows holes to be off by more than they are, which is not what is tested here.
     """
-    scene = read_model(load_cell(CELL_FILE), model_path(CELL_FILE))
-    (stated,) = stated_measurements(scene, CELL_FILE.parent)
+    scene = read_model(load_cell(CELL_FILE), model_path(CELL_FILE), CELL_FILE.parent)
+    (stated,) = stated_measurements(scene)
     parts = tuple(_as_made(part, scenario.parts.hole_sigma_mm * MM) for part in stated.parts)
     statement = replace(stated, parts=parts, frames=FRAMES, sway_m=_sway_m(stated))
     return predicted_pose(taught_placement(scene, statement), explain=True)

@@ -46,7 +46,7 @@ def examine_before_commissioning(path: Path) -> Examination:
     needs: tuple[ArmNeeds, ...] = ()
     remarks: list[ConfigIssue] = []
     if cell is not None and not found:
-        needs = tuple(arm_needs(cell))
+        needs = tuple(arm_needs(cell, path.parent))
         remarks = list(_remarks(cell, path, needs))
     return Examination(tuple(placed(found, lines)), tuple(placed(remarks, lines)), needs, cell)
 

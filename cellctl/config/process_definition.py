@@ -90,7 +90,12 @@ class ProcessDefinition(ABC):
         return ()
 
     @classmethod
-    def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:  # noqa: ARG003
+    def moves(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        folder: Path,  # noqa: ARG003
+    ) -> Iterable[StatedMove]:
         """Every move that the process can command with a recipe, from every place where it begins.
 
         Asked by offline planning alone, with a cell file that was checked; by default none. Raises

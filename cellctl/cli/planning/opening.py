@@ -24,4 +24,4 @@ def open_scene(cell_file: Path, model: Path | None) -> "CellScene":
         from cellctl.planning.model.read import read_model
     except ImportError as error:
         raise PlanningNotInstalled(str(error)) from error
-    return read_model(load_cell(cell_file), model or model_path(cell_file))
+    return read_model(load_cell(cell_file), model or model_path(cell_file), cell_file.parent)

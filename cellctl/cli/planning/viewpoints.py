@@ -30,7 +30,7 @@ def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) ->
 
     console = Console(soft_wrap=True, highlight=False)
     planned = []
-    for measurement in stated_measurements(scene, cell_file.parent):
+    for measurement in stated_measurements(scene):
         views = ViewpointPlan(scene, measurement).search()
         planned.append(views)
         for line in views_lines(views):

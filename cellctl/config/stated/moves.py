@@ -42,6 +42,8 @@ class StatedMove:
     """Every other arm with all the places at which it may be meanwhile."""
     approach: bool = False
     """True where bodies come together on purpose."""
+    procedures: frozenset[int] = frozenset()
+    """Numbers of the procedures which alone make this move; empty for one that a run makes too."""
 
     @property
     def name(self) -> str:

@@ -57,6 +57,8 @@ class BodyKeys(Section):
     mesh: MeshKeys | None = None
     stand_in: bool = False
     """A guess in place of a drawing or a measurement; `cellctl plan` says which ones these are."""
+    absent_in: frozenset[Annotated[int, Field(ge=1)]] = frozenset()
+    """Numbers of the procedures before which a person takes it away."""
 
     @model_validator(mode="after")
     def _one_shape(self) -> Self:

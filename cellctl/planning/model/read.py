@@ -41,8 +41,8 @@ _BASES_APART_M = 0.05
 """No two arms stand nearer to each other, base to base."""
 
 
-def read_model(cell: CellConfig, path: Path) -> CellScene:
-    """The model of a cell file that was checked.
+def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
+    """The model of a cell file that was checked, and that lies in ``folder``.
 
     Raises ``ConfigUnreadable``, ``ConfigInvalid``, ``ArmNotDescribed``, ``MeshNotUsable``,
     ``SizeImplausible``.
@@ -54,7 +54,7 @@ def read_model(cell: CellConfig, path: Path) -> CellScene:
     _check_approaches(document, solids, path)
     approaches = {frozenset(near.bodies): near.clearance_mm * MM for near in document.approaches}
     heads = {name: _head(cell, name, keys) for name, keys in document.stereo_cameras.items()}
-    return CellScene(cell, arms, solids, approaches, heads)
+    return CellScene(cell, folder, arms, solids, approaches, heads)
 
 
 def _document(path: Path) -> ModelDocument:
@@ -124,7 +124,7 @@ def _solids(document: ModelDocument, folder: Path) -> Iterator[Solid]:
 def _solid(name: str, keys: BodyKeys, arm: str | None, margin_m: float, folder: Path) -> Solid:
     shape, pose = _shape(keys, folder)
     link = keys.link if isinstance(keys, LinkBodyKeys) else 0
-    solid = Solid(name, arm, link, pose, shape, margin_m, keys.stand_in)
+    solid = Solid(name, arm, link, pose, shape, margin_m, keys.stand_in, keys.absent_in)
     # A body in metres would shrink to a grain, and every move past it would be free.
     if 2 * shape.radius_m < _SMALLEST_M:
         raise SizeImplausible(

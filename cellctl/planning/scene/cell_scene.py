@@ -1,7 +1,8 @@
 """The cell as its model has it: arms, their bodies, and what stands around them."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -29,12 +30,24 @@ class CellScene:
     """Everything of a model in SI units."""
 
     cell: CellConfig
+    folder: Path
+    """That of the cell file, which names its drawings from there."""
     arms: Mapping[str, PlannedArm]
     solids: tuple[Solid, ...]
     approaches: Clearances
     """What stays free, in m, between two bodies in an approach."""
     heads: Mapping[str, HeadLimits]
     """Limits of the stereo heads that the model describes."""
+
+    def during(self, procedures: frozenset[int]) -> "CellScene":
+        """The same without the bodies that are away in all of these procedures; itself for none.
+
+        A move that also another procedure makes, or a run, has to be free beside all bodies.
+        """
+        if not procedures:
+            return self
+        solids = tuple(solid for solid in self.solids if not procedures <= solid.absent_in)
+        return replace(self, solids=solids)
 
     def around(
         self,

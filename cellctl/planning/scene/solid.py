@@ -21,6 +21,8 @@ class Solid:
     shape: Shape
     margin_m: float
     stand_in: bool
+    absent_in: frozenset[int] = frozenset()
+    """Procedures before which a person takes it away."""
 
     @property
     def still(self) -> bool:

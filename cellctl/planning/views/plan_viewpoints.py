@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
@@ -60,10 +59,11 @@ class PlannedViews:
     """Why places were refused, for each head."""
 
 
-def stated_measurements(scene: CellScene, folder: Path) -> Iterator[StatedMeasurement]:
-    """The measurements of all recipes; ``folder`` is that of the cell file."""
+def stated_measurements(scene: CellScene) -> Iterator[StatedMeasurement]:
+    """The measurements of all recipes."""
     for recipe in scene.cell.recipes:
-        yield from process_definition(recipe.process).measurements(scene.cell, recipe, folder)
+        definition = process_definition(recipe.process)
+        yield from definition.measurements(scene.cell, recipe, scene.folder)
 
 
 def taught_placement(scene: CellScene, measurement: StatedMeasurement) -> ViewGeometry:

@@ -6,12 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 
-from cellctl.config.cell import CellConfig
 from cellctl.config.process_definition import process_definition
 from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.errors.config import (
     BodiesCollide,
     ClearanceTooSmall,
+    ConfigInvalid,
     PlaceUnreachable,
     PlanningError,
 )
@@ -34,11 +34,12 @@ class CheckedMove:
     """Why the move is not good; None for one that is."""
 
 
-def stated_moves(cell: CellConfig) -> Iterator[StatedMove]:
+def stated_moves(scene: CellScene) -> Iterator[StatedMove]:
     """The moves of all recipes; one that several recipes share is stated once."""
     seen: set[Hashable] = set()
-    for recipe in cell.recipes:
-        for move in process_definition(recipe.process).moves(cell, recipe):
+    for recipe in scene.cell.recipes:
+        definition = process_definition(recipe.process)
+        for move in definition.moves(scene.cell, recipe, scene.folder):
             # Recipes of one station share most of their moves.
             if (key := _key(move)) not in seen:
                 seen.add(key)
@@ -46,9 +47,25 @@ def stated_moves(cell: CellConfig) -> Iterator[StatedMove]:
 
 
 def check_moves(scene: CellScene) -> Iterator[CheckedMove]:
-    """Every stated move of an arm that the model has."""
-    for move in stated_moves(scene.cell):
+    """Every stated move of an arm that the model has.
+
+    Raises ``ConfigInvalid`` where the model names a procedure that moves nothing.
+    """
+    moves = list(stated_moves(scene))
+    _require_known(scene, frozenset[int]().union(*(move.procedures for move in moves)))
+    for move in moves:
         yield check_move(scene, move)
+
+
+def _require_known(scene: CellScene, procedures: frozenset[int]) -> None:
+    """A wrong number would leave its body in the way, or hide one that stands there."""
+    for solid in scene.solids:
+        unknown = sorted(solid.absent_in - procedures)
+        if unknown:
+            raise ConfigInvalid(
+                f"{solid.name}: absent_in names {unknown}; procedures that move an arm without a "
+                f"run: {sorted(procedures)}"
+            )
 
 
 def check_move(scene: CellScene, move: StatedMove) -> CheckedMove:
@@ -85,7 +102,8 @@ def surroundings_of(scene: CellScene, move: StatedMove) -> Surroundings:
         for robot, places in move.others.items()
         if robot in scene.arms
     }
-    return scene.around(move.robot, others, approach=move.approach)
+    there = scene.during(move.procedures)
+    return there.around(move.robot, others, approach=move.approach)
 
 
 def require_in_bounds(around: Surroundings, move: StatedMove, way_rad: Array) -> None:
@@ -108,7 +126,8 @@ def _key(move: StatedMove) -> Hashable:
         (robot, frozenset(_numbers(place) for place in places))
         for robot, places in move.others.items()
     )
-    return move.name, move.approach, _numbers(move.start), _numbers(move.end), others
+    ends = _numbers(move.start), _numbers(move.end)
+    return move.name, move.approach, *ends, others, move.procedures
 
 
 def _numbers(place: StatedPlace) -> bytes:

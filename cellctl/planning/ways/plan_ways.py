@@ -88,7 +88,7 @@ def with_ways(scene: CellScene, ways: Sequence[PlannedWay]) -> CellScene:
 def _pairs(scene: CellScene) -> list[list[StatedMove]]:
     """Joint moves between taught poses, those of both directions together."""
     pairs: dict[tuple[str, frozenset[str]], list[StatedMove]] = {}
-    for move in stated_moves(scene.cell):
+    for move in stated_moves(scene):
         taught = scene.cell.robots[move.robot].poses_deg
         ends = move.start.label, move.end.label
         if move.kind is MoveKind.JOINT and all(end in taught for end in ends):
@@ -101,8 +101,11 @@ def _united(moves: Sequence[StatedMove]) -> StatedMove:
 
     One way serves both directions, so that it has to be free in each of them.
     """
+    by_procedures = [move.procedures for move in moves]
+    # Beside a move of a run no procedure is alone with it.
+    alone = frozenset[int]().union(*by_procedures) if all(by_procedures) else frozenset[int]()
     others = {
         robot: tuple(place for move in moves for place in move.others.get(robot, ()))
         for robot in {name for move in moves for name in move.others}
     }
-    return replace(moves[0], others=others)
+    return replace(moves[0], others=others, procedures=alone)

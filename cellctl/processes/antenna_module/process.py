@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
+from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
 from cellctl.processes.antenna_module.faults.plugging import (
     FORCE_FAULTS,
@@ -88,6 +89,13 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         yield from board_remarks(cell, settings, f"processes.{recipe.process}", folder)
         yield from look_remarks(cell, plugged, folder)
         yield from tool_floor_remarks(cell, plugged.device(ARM), plugged.flange_T_plug)
+
+    @classmethod
+    def moves(cls, cell: CellConfig, recipe: Recipe, folder: Path) -> Iterable[StatedMove]:
+        """Those of a run, of the way back to its beginning, and of the procedures."""
+        from cellctl.processes.antenna_module.moves.stated_moves import plugging_moves
+
+        return plugging_moves(cell, cast(AntennaRecipe, recipe), folder)
 
     @classmethod
     def calibration_kinds(cls) -> "Kinds":

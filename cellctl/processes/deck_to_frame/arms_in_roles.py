@@ -2,13 +2,11 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.driver_settings import robot_driver
+from cellctl.config.stated.arm_places import ArmPlaces
 from cellctl.config.stated.moves import StatedPlace
-from cellctl.errors.config import ArmNotDescribed
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import (
@@ -42,7 +40,7 @@ class ArmsInRoles:
 
     def taught(self, robot: str, pose: str) -> StatedPlace:
         """A taught pose."""
-        return StatedPlace(pose, np.radians(self.cell.robots[robot].poses_deg[pose]))
+        return ArmPlaces(self.cell, robot).taught(pose)
 
     def at_flange(
         self, label: str, base_T_flange: RigidTransform, near: StatedPlace
@@ -51,12 +49,8 @@ class ArmsInRoles:
         return StatedPlace(label, near.joints_rad, base_T_flange)
 
     def flange_at(self, robot: str, place: StatedPlace) -> RigidTransform:
-        """``base_T_flange`` at the joints of a place; raises ``ArmNotDescribed``."""
-        driver, settings = robot_driver(self.cell.robots[robot])
-        kinematics = driver.forward_kinematics(settings)
-        if kinematics is None:
-            raise ArmNotDescribed(f"robots.{robot}: its settings have no dh table")
-        return kinematics(place.joints_rad)
+        """``base_T_flange`` at a place; raises ``ArmNotDescribed``."""
+        return ArmPlaces(self.cell, robot).flange_at(place)
 
     def heads_at(self, *poses: str) -> Others:
         """Both heads' arms, each at any of these poses."""

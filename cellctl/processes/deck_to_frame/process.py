@@ -97,7 +97,12 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         return recipe_remarks(cell, cast(DeckRecipe, recipe), key, folder)
 
     @classmethod
-    def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:
+    def moves(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        folder: Path,  # noqa: ARG003 - the recipe says all
+    ) -> Iterable[StatedMove]:
         """Those of a run, of the way back to its beginning, and of the procedures."""
         from cellctl.processes.deck_to_frame.stated_moves import deck_moves
 

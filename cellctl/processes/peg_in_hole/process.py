@@ -79,7 +79,12 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         return recipe_remarks(cell, cast(PegRecipe, recipe), key, folder)
 
     @classmethod
-    def moves(cls, cell: CellConfig, recipe: Recipe) -> Iterable[StatedMove]:
+    def moves(
+        cls,
+        cell: CellConfig,
+        recipe: Recipe,
+        folder: Path,  # noqa: ARG003 - the recipe says all
+    ) -> Iterable[StatedMove]:
         """Those of a run and of the way back to its beginning; the procedures make the same."""
         from cellctl.processes.peg_in_hole.plan.stated_moves import peg_moves
 

@@ -11,7 +11,7 @@ DECK = Path("config/deck.toml")
 
 
 def deck_scene() -> CellScene:
-    return read_model(load_cell(DECK), model_path(DECK))
+    return read_model(load_cell(DECK), model_path(DECK), DECK.parent)
 
 
 def write_model(folder: Path, old: str, new: str) -> Path:

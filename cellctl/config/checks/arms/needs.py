@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -45,16 +46,18 @@ class BoxRoom:
     above_mm: Array
 
 
-def arm_needs(cell: CellConfig) -> Iterator[ArmNeeds]:
-    """The needs of every arm of a good cell file; none where an arm of it is not described, since
-    processes state their moves of all arms together."""
+def arm_needs(cell: CellConfig, folder: Path) -> Iterator[ArmNeeds]:
+    """The needs of every arm of a good cell file in ``folder``.
+
+    None where an arm of it is not described: processes state their moves of all arms together.
+    """
     chains = described_arms(cell, frozenset())
     if len(chains) < len(cell.robots):
         return
     moves = [
         move
         for recipe in cell.recipes
-        for move in process_definition(recipe.process).moves(cell, recipe)
+        for move in process_definition(recipe.process).moves(cell, recipe, folder)
     ]
     for name, chain in chains.items():
         taught = [np.radians(joints_deg) for joints_deg in cell.robots[name].poses_deg.values()]

@@ -65,13 +65,3 @@ class Mover:
                     base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=acceleration_m_s2
                 )
             )
-
-
-def raised(base_T_flange: RigidTransform, height_m: float) -> RigidTransform:
-    """The same flange, higher along z of the base."""
-    return RigidTransform.from_translation([0.0, 0.0, height_m]) * base_T_flange
-
-
-def shifted(base_T_flange: RigidTransform, x_m: float, y_m: float) -> RigidTransform:
-    """The same flange, shifted along x and y of the base."""
-    return RigidTransform.from_translation([x_m, y_m, 0.0]) * base_T_flange

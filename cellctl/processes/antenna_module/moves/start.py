@@ -6,7 +6,8 @@ from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import ModuleInGripper
 from cellctl.processes.antenna_module.looking import nominal
 from cellctl.processes.antenna_module.mated import MATED_TURN
-from cellctl.processes.antenna_module.moves.moving import Mover, raised
+from cellctl.processes.antenna_module.moves.moving import Mover
+from cellctl.processes.antenna_module.moves.places import raised
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.run import PluggingRun

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.geometry.pose import Array, pose_from_xyzabc
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces import Camera
 from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.connector.marks import Marks
@@ -14,12 +14,11 @@ from cellctl.processes.antenna_module.faults.connector import MarksMissing
 from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete
 from cellctl.processes.antenna_module.looking import Eyes, Seen, marks_by
 from cellctl.processes.antenna_module.moves.moving import Mover
+from cellctl.processes.antenna_module.moves.places import turned
 from cellctl.processes.antenna_module.recipe import Place
 from cellctl.processes.antenna_module.roles import INSPECT_PLUG
 from cellctl.processes.antenna_module.vision.measurement import MeasuredMarks
 from cellctl.vision.camera.single_camera import SingleCamera
-
-_LAST_JOINT = 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,16 +43,9 @@ class TurnDrive:
         ``angle_rad`` is from the taught pose over camera II. Raises ``LooksIncomplete`` where the
         marks are not seen, and what moves and images raise.
         """
-        await self.mover.to_joints(self._turned(angle_rad))
+        over_camera = np.radians(self.facts.cell.arm.config.poses_deg[INSPECT_PLUG])
+        await self.mover.to_joints(turned(over_camera, angle_rad))
         return await self._marks(name, angle_rad)
-
-    def _turned(self, angle_rad: float) -> Array:
-        """Joints with the gripper over camera II, the last one turned."""
-        joints = np.radians(self.facts.cell.arm.config.poses_deg[INSPECT_PLUG])
-        # Towards the middle of the joint's range: half a turn outwards may be beyond it.
-        inwards = -1.0 if joints[_LAST_JOINT] > 0 else 1.0
-        joints[_LAST_JOINT] += inwards * angle_rad
-        return np.asarray(joints)
 
     async def _marks(self, name: str, angle_rad: float) -> TurnStop:
         facts, cell = self.facts, self.facts.cell

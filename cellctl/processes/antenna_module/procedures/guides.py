@@ -19,7 +19,11 @@ _BOARD_LIES = (
     (_LEAVES, "The robot swings camera I about the board, stops for each view, and drives home."),
 )
 _BOARD_HANGS = (
-    ("The calibration board is on the flange, and camera II sees it at the taught pose.",),
+    (
+        "The calibration board is on the flange, and camera II sees it at the taught pose.",
+        # It lies within the space that the board is swung through (docs/planning.md).
+        "The reference plate is taken away.",
+    ),
     (_LEAVES, "The robot swings the board over camera II, stops for each view, and drives home."),
 )
 CAMERA_1 = Guide(
@@ -34,7 +38,9 @@ CAMERA_2 = Guide(
 )
 ON_FLANGE = Guide(*_BOARD_LIES, renews=(FLANGE_CAMERA.name,))
 BESIDE = Guide(
-    *_BOARD_HANGS, ("Take the calibration board off the flange.",), renews=(FIXED_CAMERA.name,)
+    *_BOARD_HANGS,
+    ("Take the calibration board off the flange, and put the reference plate back.",),
+    renews=(FIXED_CAMERA.name,),
 )
 TAUGHT = Guide(
     (_EMPTY, "The reference plate is in its place."),

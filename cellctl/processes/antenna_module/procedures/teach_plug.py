@@ -20,7 +20,7 @@ from cellctl.processes.antenna_module.facts import read_facts
 from cellctl.processes.antenna_module.faults.calibration import NobodyPlugged
 from cellctl.processes.antenna_module.faults.plugging import ModuleMissing
 from cellctl.processes.antenna_module.mated import connector_T_plug
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import OVER_SOCKET_M, WAITING_M, raised
 from cellctl.processes.antenna_module.moves.start import move_to_start
 from cellctl.processes.antenna_module.procedures.by_hand import PATIENCE, jogged_by_hand
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
@@ -39,9 +39,6 @@ from cellctl.runtime.process import CellServices, RunContext
 MODE = "teaching"
 SLOT = "1"
 """Name of the one socket that a recipe has."""
-_WAITING_M = 10e-3
-"""Height of the tips over the socket's face while the arm waits for the operator."""
-_OVER_M = 20e-3
 _LOOK_AGAIN_S = 2.0
 
 
@@ -117,11 +114,11 @@ async def _wait_above(located: SocketLocated) -> None:
     base_T_socket = run.facts.plug_cell.base_T_cam1(look.base_T_flange) * look.camera_T_socket.pose
     socket = run.drawings.socket
     flange_T_plug = located.flange_T_connector * connector_T_plug(socket)
-    up_m = socket.seat_depth_m + _WAITING_M
+    up_m = socket.seat_depth_m + WAITING_M
     waiting = (
         base_T_socket * RigidTransform.from_translation([0.0, 0.0, up_m]) * flange_T_plug.inv()
     )
-    over = raised(waiting, _OVER_M)
+    over = raised(waiting, OVER_SOCKET_M)
     here = run.cell.arm.robot.state().base_T_flange
     climb_m = float(over.translation[2] - here.translation[2])
     await run.mover.to(raised(here, max(0.0, climb_m)))

@@ -10,7 +10,7 @@ from cellctl.processes.antenna_module.faults.connector import ConnectorError
 from cellctl.processes.antenna_module.faults.plugging import MovedOnRelease
 from cellctl.processes.antenna_module.looking import Seen, combined, height_by_size, marks_by
 from cellctl.processes.antenna_module.mated import connector_T_plug
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Inserted

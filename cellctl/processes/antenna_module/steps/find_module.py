@@ -15,7 +15,7 @@ from cellctl.processes.antenna_module.faults.connector import (
 )
 from cellctl.processes.antenna_module.faults.plugging import ModuleMisplaced, ModuleMissing
 from cellctl.processes.antenna_module.looking import combined, height_by_size, marks_by, nominal
-from cellctl.processes.antenna_module.moves.moving import shifted
+from cellctl.processes.antenna_module.moves.places import shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.roles import TRAY_LOOK
 from cellctl.processes.antenna_module.run import PluggingRun

@@ -10,7 +10,7 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.looks import Looks, SocketLook
 from cellctl.processes.antenna_module.faults.plugging import SocketUnsound
 from cellctl.processes.antenna_module.looking import Seen, combined, connector_by, nominal
-from cellctl.processes.antenna_module.moves.moving import shifted
+from cellctl.processes.antenna_module.moves.places import AWAY_M, shifted
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.record.pictures import record_picture
 from cellctl.processes.antenna_module.roles import SOCKET_LOOK
@@ -23,9 +23,6 @@ from cellctl.processes.antenna_module.vision.measurement import (
     require_sound,
 )
 from cellctl.processes.antenna_module.vision.result_file import result_to_json
-
-_AWAY_M = 5e-3
-"""How far the arm goes away between two looks: so far that it approaches its place anew."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +51,7 @@ async def locate_socket(inspected: PlugInspected) -> SocketLocated:
         run.say(f"look {number} of {run.recipe.socket_looks}")
         # Each look from an approach of its own: the mean of looks from one place would have the
         # whole error of that one approach.
-        away_m = _AWAY_M if number % 2 else -_AWAY_M
+        away_m = AWAY_M if number % 2 else -AWAY_M
         await run.mover.to(shifted(over, away_m, 0.0))
         await run.mover.to(over)
         sight = await _look(run, f"socket-{number}")

@@ -12,7 +12,7 @@ from cellctl.processes.antenna_module.faults.connector import (
     MarksMissing,
 )
 from cellctl.processes.antenna_module.faults.plugging import LooksDisagree
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import AWAY_M, raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 
@@ -26,7 +26,6 @@ BY_CHANCE: tuple[type[CellError], ...] = (
 )
 """A reflection, a shadow, an arm that still swung: another picture may be good. What a picture says
 of the part itself (missing, bent, turned, another connector) a second one says again."""
-_AWAY_M = 5e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,5 +60,5 @@ class SecondLook:
         """Up and back to the same place: constant errors cancel only there."""
         self.run.say("look again")
         here = self.run.cell.arm.robot.state().base_T_flange
-        await self.run.mover.to(raised(here, _AWAY_M))
+        await self.run.mover.to(raised(here, AWAY_M))
         await self.run.mover.to(here)

@@ -8,7 +8,7 @@ from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import WrongModuleMass
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import raised
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import HeldModule, ModuleFound, Picked

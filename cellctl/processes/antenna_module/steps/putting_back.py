@@ -1,7 +1,7 @@
 """A picked module goes back onto its tray; step 46, within step 40, for one that is bad."""
 
 from cellctl.geometry.pose import MM
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import raised
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import Picked
 

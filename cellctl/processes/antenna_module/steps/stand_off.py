@@ -7,13 +7,11 @@ from cellctl.clock import now_s
 from cellctl.errors.force import TareImplausible
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.mated import connector_T_plug
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import OVER_SOCKET_M, raised
 from cellctl.processes.antenna_module.pushing.way import InsertionWay
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.state import OverSocket, Planned
 
-_OVER_M = 20e-3
-"""Height over the stand-off at which the plug comes over the socket."""
 _TARE_S = 0.5
 _TOUCH_N = 3.0
 """What arm and hoses may change of the raw force between two places in one orientation."""
@@ -28,7 +26,7 @@ async def stand_off(planned: Planned) -> OverSocket:
     way = way_of(planned)
     target = way.pose_at(-run.recipe.insertion.stand_off_mm * MM)
     here = run.cell.arm.robot.state().base_T_flange
-    over = raised(target, _OVER_M)
+    over = raised(target, OVER_SOCKET_M)
     climb_m = max(0.0, float(over.translation[2] - here.translation[2]))
     await run.mover.to(raised(here, climb_m))
     await run.mover.to(over)

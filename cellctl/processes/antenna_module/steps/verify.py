@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.faults.plugging import PlugNotHeld
 from cellctl.processes.antenna_module.insertion.limits import InsertionPhase
-from cellctl.processes.antenna_module.moves.moving import raised
+from cellctl.processes.antenna_module.moves.places import raised
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 from cellctl.processes.antenna_module.pushing.push_in import FINE_M
 from cellctl.processes.antenna_module.record import keys

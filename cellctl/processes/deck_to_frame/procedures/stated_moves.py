@@ -1,6 +1,7 @@
 """The moves of the procedures 101 to 107; 108 makes those of an assembly, 109 some of 103."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import pairwise
 from typing import cast
 
@@ -22,10 +23,14 @@ from cellctl.processes.deck_to_frame.settings import DeckSettings
 def procedure_moves(arms: ArmsInRoles) -> Iterator[StatedMove]:
     """Each begins with the main arm at home and the heads retracted, but the one that measures."""
     settings = cast(DeckSettings, arms.cell.processes[arms.recipe.process])
-    yield from _head_views(arms, settings.stereo_views)
-    yield from _axis_turns(arms, settings)
-    yield from _tilts(arms, settings)
-    yield from _stop_latency(arms)
+    by_procedures: list[tuple[set[int], Iterable[StatedMove]]] = [
+        ({101, 102}, _head_views(arms, settings.stereo_views)),
+        ({103, 109}, _axis_turns(arms, settings)),
+        ({106}, _tilts(arms, settings)),
+        ({107}, _stop_latency(arms)),
+    ]
+    for numbers, moves in by_procedures:
+        yield from (replace(move, procedures=frozenset(numbers)) for move in moves)
 
 
 def _head_views(arms: ArmsInRoles, count: int) -> Iterator[StatedMove]:

@@ -12,9 +12,8 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.driver_settings import robot_driver
+from cellctl.config.stated.arm_places import ArmPlaces
 from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
-from cellctl.errors.config import ArmNotDescribed
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.leaving import CLEAR_OF_FACE_M
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
@@ -66,15 +65,12 @@ class _TipPlaces:
     """Places of the tip about the believed hole, in the attitude of the taught pose over it."""
 
     def __init__(self, cell: CellConfig, recipe: PegRecipe, arm: str) -> None:
-        self._robot = cell.robots[arm]
+        self._arm = ArmPlaces(cell, arm)
         self._hole = pose_from_xyzabc(recipe.base_T_hole.pose)
         self._flange_T_tip = pose_from_xyzabc(recipe.flange_T_tip)
-        driver, settings = robot_driver(self._robot)
-        kinematics = driver.forward_kinematics(settings)
-        if kinematics is None:
-            raise ArmNotDescribed(f"robots.{arm}: its settings have no dh table")
-        self._above_rad: Array = np.radians(self._robot.poses_deg[ABOVE_HOLE])
-        tip = self._hole.inv() * kinematics(self._above_rad) * self._flange_T_tip
+        above = self.taught(ABOVE_HOLE)
+        self._above_rad = above.joints_rad
+        tip = self._hole.inv() * self._arm.flange_at(above) * self._flange_T_tip
         self._attitude = tip.rotation
         uncertain_m = recipe.base_T_hole.height_uncertainty_mm * MM
         self.clear_m = CLEAR_M + uncertain_m
@@ -86,7 +82,7 @@ class _TipPlaces:
 
     def taught(self, pose: str) -> StatedPlace:
         """A taught pose."""
-        return StatedPlace(pose, np.radians(self._robot.poses_deg[pose]))
+        return self._arm.taught(pose)
 
     def at(self, label: str, place_m: Array, height_m: float) -> StatedPlace:
         """The tip beside the middle of the hole by (x, y) and so high over its face."""

@@ -37,7 +37,7 @@ def test_the_shipped_model_says_what_is_a_guess() -> None:
 
 def test_a_mesh_is_read_in_its_unit(tmp_path: Path) -> None:
     path = with_mesh(tmp_path, trimesh.creation.box((400.0, 200.0, 10.0)))
-    scene = read_model(CELL, path)
+    scene = read_model(CELL, path, DECK.parent)
     (deck,) = [solid for solid in scene.solids if solid.name == "main.deck"]
     assert deck.shape.mesh().extents.tolist() == pytest.approx([0.4, 0.2, 0.01])
 
@@ -46,27 +46,27 @@ def test_an_open_mesh_is_refused(tmp_path: Path) -> None:
     mesh = trimesh.creation.box((400.0, 200.0, 10.0))
     mesh.update_faces(range(1, 12))
     with pytest.raises(MeshNotUsable, match="not closed"):
-        read_model(CELL, with_mesh(tmp_path, mesh))
+        read_model(CELL, with_mesh(tmp_path, mesh), DECK.parent)
 
 
 def test_a_mesh_that_is_no_mesh_is_refused(tmp_path: Path) -> None:
     (tmp_path / "deck.stl").write_bytes(b"solid nothing")
     keys = 'mesh = { file = "deck.stl" }'
     with pytest.raises(MeshNotUsable):
-        read_model(CELL, write_model(tmp_path, DECK_BOX, keys))
+        read_model(CELL, write_model(tmp_path, DECK_BOX, keys), DECK.parent)
 
 
 @pytest.mark.parametrize(("size", "unit"), [(0.4, "mm"), (400.0, "m")])
 def test_units_wrong_by_a_thousand_are_refused(tmp_path: Path, size: float, unit: str) -> None:
     path = with_mesh(tmp_path, trimesh.creation.box((size, size, size)), unit)
     with pytest.raises(SizeImplausible, match="expected"):
-        read_model(CELL, path)
+        read_model(CELL, path, DECK.parent)
 
 
 def test_a_body_far_from_its_link_is_refused(tmp_path: Path) -> None:
     path = write_model(tmp_path, "to_mm = [0.0, 0.0, 960.0]", "to_mm = [0.0, 0.0, 9600.0]")
     with pytest.raises(SizeImplausible, match=r"main\.forearm"):
-        read_model(CELL, path)
+        read_model(CELL, path, DECK.parent)
 
 
 @pytest.mark.parametrize(
@@ -89,7 +89,7 @@ def test_metres_in_place_of_millimetres_are_refused(
     tmp_path: Path, old: str, new: str, words: str
 ) -> None:
     with pytest.raises(SizeImplausible, match=words):
-        read_model(CELL, write_model(tmp_path, old, new))
+        read_model(CELL, write_model(tmp_path, old, new), DECK.parent)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_metres_in_place_of_millimetres_are_refused(
 )
 def test_what_is_wrong_is_said(tmp_path: Path, old: str, new: str, fault: type[CellError]) -> None:
     with pytest.raises(fault):
-        read_model(CELL, write_model(tmp_path, old, new))
+        read_model(CELL, write_model(tmp_path, old, new), DECK.parent)
 
 
 def test_a_robot_that_the_cell_does_not_have_is_refused(tmp_path: Path) -> None:
@@ -114,7 +114,7 @@ def test_a_robot_that_the_cell_does_not_have_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(ArmNotDescribed, match="aux_3"):
-        read_model(CELL, path)
+        read_model(CELL, path, DECK.parent)
 
 
 @given(st.binary(max_size=200))
@@ -123,4 +123,4 @@ def test_any_bytes_are_refused_with_a_number(content: bytes) -> None:
         path = Path(folder) / "deck.model.toml"
         path.write_bytes(content)
         with pytest.raises(CellError):
-            read_model(CELL, path)
+            read_model(CELL, path, DECK.parent)

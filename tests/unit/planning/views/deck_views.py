@@ -6,13 +6,13 @@ from typing import Any
 from cellctl.config.stated.views import StatedMeasurement
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.plan_viewpoints import stated_measurements
-from tests.unit.planning.deck_cell import DECK, deck_scene
+from tests.unit.planning.deck_cell import deck_scene
 
 SCENE = deck_scene()
 
 
 def measurement() -> StatedMeasurement:
-    (found,) = stated_measurements(SCENE, DECK.parent)
+    (found,) = stated_measurements(SCENE)
     return found
 
 

@@ -5,14 +5,19 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
-from cellctl.errors.config import BodiesCollide, ClearanceTooSmall, PlaceUnreachable
+from cellctl.errors.config import (
+    BodiesCollide,
+    ClearanceTooSmall,
+    ConfigInvalid,
+    PlaceUnreachable,
+)
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways import check_moves
 from cellctl.planning.ways.check_moves import check_move, stated_moves
 from tests.unit.planning.deck_cell import deck_scene
 
 SCENE = deck_scene()
-MOVES = list(stated_moves(SCENE.cell))
+MOVES = list(stated_moves(SCENE))
 
 
 def stated(robot: str, start: str, end: str) -> StatedMove:
@@ -122,8 +127,27 @@ def test_a_move_that_other_arms_stand_beside_elsewhere_is_stated_too(
 
     class Definition:
         @staticmethod
-        def moves(_cell: object, _recipe: object) -> list[StatedMove]:
+        def moves(_cell: object, _recipe: object, _folder: object) -> list[StatedMove]:
             return told
 
     monkeypatch.setattr(check_moves, "process_definition", lambda _name: Definition)
-    assert [dict(one.others) for one in stated_moves(cell)] == [dict(move.others), elsewhere]
+    assert [dict(one.others) for one in stated_moves(replace(SCENE, cell=cell))] == [
+        dict(move.others),
+        elsewhere,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("procedures", "there"), [({103, 109}, False), ({103, 108}, True), (set(), True)]
+)
+def test_a_body_is_away_in_moves_that_its_procedures_alone_make(
+    procedures: set[int], there: bool
+) -> None:
+    names = {solid.name for solid in SCENE.during(frozenset(procedures)).solids}
+    assert ("main.deck" in names) is there
+
+
+def test_a_procedure_that_moves_nothing_is_refused() -> None:
+    solids = tuple(replace(one, absent_in=frozenset({103, 999})) for one in SCENE.solids)
+    with pytest.raises(ConfigInvalid, match=r"names \[999\].*101, 102, 103"):
+        next(check_moves.check_moves(replace(SCENE, solids=solids)))

@@ -30,7 +30,7 @@ def refused(folder: Path, name: str, old: str, new: str) -> list[str]:
 def test_shipped_cells_have_no_remark_on_their_arms(tmp_path: Path, name: str) -> None:
     cell = examine_before_commissioning(written(tmp_path / "cell", name)).cell
     assert cell is not None
-    assert [*table_remarks(cell), *box_remarks(cell, arm_needs(cell))] == []
+    assert [*table_remarks(cell), *box_remarks(cell, arm_needs(cell, tmp_path / "cell"))] == []
 
 
 @pytest.mark.parametrize(
@@ -104,7 +104,7 @@ def test_a_table_is_held_against_the_published_reach_of_the_model(tmp_path: Path
 def test_room_is_measured_to_the_outermost_places(tmp_path: Path) -> None:
     cell = examine_before_commissioning(written(tmp_path / "cell", PIN)).cell
     assert cell is not None
-    (needs,) = arm_needs(cell)
+    (needs,) = arm_needs(cell, tmp_path / "cell")
     (room,) = rooms(cell.robots["arm"], needs)
     # The lowest place is the seat: face of the hole at 200, tool of 200, 12 mm deep, 1.5 uncertain.
     assert room.below_mm[2] == pytest.approx(200.0 + 200.0 - 12.0 - 1.5 - 340.0, abs=0.01)

@@ -15,8 +15,8 @@ from cellctl.planning.ways.check_moves import check_move, stated_moves
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 
 PIN = Path("config/insertion-pin.toml")
-SCENE = read_model(load_cell(PIN), model_path(PIN))
-MOVES = list(stated_moves(SCENE.cell))
+SCENE = read_model(load_cell(PIN), model_path(PIN), PIN.parent)
+MOVES = list(stated_moves(SCENE))
 RECIPE = cast(PegRecipe, SCENE.cell.recipes[0])
 
 
