@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
+from cellctl.errors.config import HeadNotDescribed, PlaceUnreachable
 
 Picture = Annotated[Path, typer.Option("--picture", help="PNG with three views.")]
 Glb = Annotated[Path | None, typer.Option("--glb", help="Also a GLB file for a 3-D viewer.")]
@@ -21,11 +22,23 @@ def show(
     scene = open_scene(cell_file, model)
     # The libraries of planning may be missing, which opening the scene says.
     from cellctl.calibration.output_file import write_file
+    from cellctl.planning.pictures.frusta import Frustum, frusta
     from cellctl.planning.pictures.glb import cell_glb
+    from cellctl.planning.pictures.paths import FlangePath, flange_paths
     from cellctl.planning.pictures.views import three_views
 
-    write_file(picture, three_views(scene))
+    views: tuple[Frustum, ...] = ()
+    paths: tuple[FlangePath, ...] = ()
+    try:
+        views = tuple(frusta(scene))
+    except HeadNotDescribed as fault:
+        typer.echo(f"what the heads see is not drawn: {fault}")
+    try:
+        paths = tuple(flange_paths(scene))
+    except PlaceUnreachable as fault:
+        typer.echo(f"the ways of the flanges are not drawn: {fault}")
+    write_file(picture, three_views(scene, views, paths))
     typer.echo(f"written: {picture}")
     if glb is not None:
-        write_file(glb, cell_glb(scene))
+        write_file(glb, cell_glb(scene, views, paths))
         typer.echo(f"written: {glb}")
