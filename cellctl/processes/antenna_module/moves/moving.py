@@ -7,8 +7,11 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.config.stated.arm_places import ArmPlaces
+from cellctl.errors.config import ArmNotDescribed
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.moves.places import raised
 from cellctl.processes.antenna_module.stations import AntennaCell
 
 FREE = WrenchTolerance(force_n=15.0, moment_n_m=4.0)
@@ -29,6 +32,25 @@ class Mover:
     async def to_taught(self, pose: str) -> None:
         """A joint move to a taught pose."""
         await self.to_joints(np.radians(self.cell.arm.config.poses_deg[pose]))
+
+    async def to_taught_over(self, pose: str) -> None:
+        """To a taught pose by joints, from no lower than that one.
+
+        Joints go obliquely: from below, what hangs in the gripper would pass what stands beside the
+        pose lower than it is shown there.
+        """
+        arm = self.cell.arm
+        places = ArmPlaces(self.cell.cell.config, arm.sensor.mounted_on)
+        here = arm.robot.state().base_T_flange
+        try:
+            taught = places.flange_at(places.taught(pose))
+        except ArmNotDescribed:
+            # Without its kinematics nobody knows how high the pose is: as somebody has tried it.
+            taught = here
+        climb_m = float(taught.translation[2] - here.translation[2])
+        if climb_m > 0.0:
+            await self.to(raised(here, climb_m))
+        await self.to_taught(pose)
 
     async def to_joints(self, joints_rad: Array) -> None:
         """A joint move, shape (6,)."""

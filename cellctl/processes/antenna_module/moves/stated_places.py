@@ -83,11 +83,11 @@ class PluggingPlaces:
         return self.raised("above the tray", self.grip, self.recipe.grip_approach_mm * MM)
 
     @cached_property
-    def back_over_tray(self) -> StatedPlace:
+    def high_over_tray(self) -> StatedPlace:
         """Over the tray, as high as the module was shown to camera II."""
         inspect_m = self._height_m(self.taught(INSPECT_PLUG))
         higher_m = max(0.0, inspect_m - self._height_m(self.above_tray))
-        return self.raised("back over the tray", self.above_tray, higher_m)
+        return self.raised("high over the tray", self.above_tray, higher_m)
 
     @cached_property
     def seat(self) -> StatedPlace:

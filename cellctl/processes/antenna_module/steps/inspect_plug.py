@@ -81,7 +81,7 @@ async def _sound_again(picked: Picked, first: ConnectorMisplaced) -> _PlugSight:
 
 async def _sound(picked: Picked, images: str) -> _PlugSight:
     run = picked.run
-    await run.mover.to_taught(INSPECT_PLUG)
+    await run.mover.to_taught_over(INSPECT_PLUG)
     try:
         return await SecondLook(run).look(images, partial(_look, run))
     except BAD_CONTACTS:

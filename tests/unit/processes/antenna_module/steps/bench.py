@@ -161,6 +161,9 @@ class Bench:
     async def to_taught(self, pose: str) -> None:
         self._go(pose, TAUGHT[pose])
 
+    async def to_taught_over(self, pose: str) -> None:
+        await self.to_taught(pose)
+
     async def to(self, base_T_flange: RigidTransform) -> None:
         self._go("move", base_T_flange)
 

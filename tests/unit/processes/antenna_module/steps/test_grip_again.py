@@ -80,7 +80,7 @@ async def test_a_touch_on_the_way_back_ends_it_with_the_module_held(bench: Bench
     held = picked(bench)
 
     class Touched:
-        to, to_taught = bench.to, bench.to_taught
+        to, to_taught_over = bench.to, bench.to_taught
 
         async def slowly_to(self, _pose: object) -> None:
             raise ForceLimitExceeded("5.2 N")
