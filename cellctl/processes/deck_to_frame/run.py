@@ -13,6 +13,8 @@ from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.errors import CellError
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
+from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
+from cellctl.processes.deck_to_frame.moves.lift_off import NEAR_SPEED_M_S
 from cellctl.processes.deck_to_frame.poses.part_measurer import (
     HeadGeometry,
     PartMeasurement,
@@ -170,18 +172,22 @@ class AssemblyRun:
         """
         main = self.cell.main_config
         speeds = main.linear_speed_mm_s, main.linear_acceleration_mm_s2
-        await self._move(base_T_flange, flange_T_deck, *speeds)
+        # Nothing that was measured is near on this way, so the limit of a wanted contact does.
+        await self._move(base_T_flange, flange_T_deck, *speeds, self.recipe.mating.limit_force_n)
 
-    async def lower_flange(
+    async def move_near_frame(
         self, base_T_flange: RigidTransform, flange_T_deck: RigidTransform
     ) -> None:
-        """Move like ``move_flange``, but as slowly as the fast travel of the mating.
+        """Move like ``move_flange``, but slowly and hardly felt: the frame is near.
 
-        Its lower acceleration allows tighter limits.
+        How near says the thickness of the deck, which nothing has measured yet: the first contact
+        with the frame shows it. So it goes no faster than the deck leaves pins and edges, and any
+        force beyond what acceleration makes of the payload stops it as in the fast travel.
         """
         mating = self.recipe.mating
-        speeds = mating.fast_speed_mm_s, mating.acceleration_mm_s2
-        await self._move(base_T_flange, flange_T_deck, *speeds)
+        speed_mm_s = min(mating.fast_speed_mm_s, NEAR_SPEED_M_S / MM)
+        speeds = speed_mm_s, mating.acceleration_mm_s2
+        await self._move(base_T_flange, flange_T_deck, *speeds, FAST_LIMIT_N)
 
     async def _move(
         self,
@@ -189,11 +195,12 @@ class AssemblyRun:
         flange_T_deck: RigidTransform,
         speed_mm_s: float,
         acceleration_mm_s2: float,
+        contact_n: float,
     ) -> None:
-        # docs/mating.md, "Over the station": 200 kg at 200 mm/s² swing with 80 N, and the limit of
-        # the recipe comes on top.
+        # docs/mating.md, "Over the station": 200 kg at 200 mm/s² swing with 80 N, and what counts
+        # as a contact comes on top.
         inertia_n = SWING_RATIO * self.facts.payload.mass_kg * acceleration_mm_s2 * MM
-        force_n = inertia_n + self.recipe.mating.limit_force_n
+        force_n = inertia_n + contact_n
         tolerance = WrenchTolerance(force_n, force_n * LEVER_M)
         async with guarded_moves(self.cell.cell, self.cell.arm, flange_T_deck, tolerance) as move:
             await move(

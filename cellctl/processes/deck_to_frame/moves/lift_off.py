@@ -24,8 +24,8 @@ LIFT_M = 0.06
 SLOW_LIFT_M = 0.015
 """Height up to which the lift is slow: above pins of usual length. Longer ones are left at the
 speed of the robot, under the guard as well."""
-SLOW_SPEED_M_S = 2e-3
-"""Speed of the stretch after the first: pins and edges are still near."""
+NEAR_SPEED_M_S = 2e-3
+"""Speed where pins and edges are near: of the stretch after the first, and of the last one down."""
 LOW_M = 0.03
 """A deck less than this above its seat is lifted before it goes anywhere else: above the stand-off,
 where a mating begins, and all that a mating can leave."""
@@ -83,7 +83,7 @@ async def _rise(
     cell: DeckCell, mating: Mating, base_T_flange: RigidTransform, away: Array, move: GuardedMove
 ) -> None:
     fast_m_s = cell.main_config.linear_speed_mm_s * MM
-    for height_m, speed_m_s in ((SLOW_LIFT_M, SLOW_SPEED_M_S), (LIFT_M, fast_m_s)):
+    for height_m, speed_m_s in ((SLOW_LIFT_M, NEAR_SPEED_M_S), (LIFT_M, fast_m_s)):
         await move(
             cell.main.move_linear(
                 _above(base_T_flange, height_m * away),
@@ -101,7 +101,7 @@ def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
     """Speed of the first stretch in m/s, from the recipe's bounds."""
     delay_s = (mating.stop_latency_ms + force.stale_ms) / 1e3 + DEFAULT_FILTER_S
     stiffness_n_m = mating.stiffness_n_per_mm / MM
-    return leaving_speed_m_s(mating.limit_force_n, stiffness_n_m, delay_s, SLOW_SPEED_M_S)
+    return leaving_speed_m_s(mating.limit_force_n, stiffness_n_m, delay_s, NEAR_SPEED_M_S)
 
 
 def recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:

@@ -93,7 +93,7 @@ async def _correct(stand_off: AtStandOff, M_T_D: UncertainPose) -> AtStandOff:
         run.base_T_c1, stand_off.c1_T_M, commanded, stand_off.flange_T_deck
     )
     await run.recorder.commanded(base_T_flange)
-    await run.move_flange(base_T_flange, stand_off.flange_T_deck)
+    await run.move_near_frame(base_T_flange, stand_off.flange_T_deck)
     return replace(stand_off, commanded=commanded, base_T_flange=base_T_flange)
 
 

@@ -22,7 +22,7 @@ async def pre_assembly(deck: DeckMeasured) -> AtStandOff:
     )
     await run.recorder.commanded(base_T_flange)
     await run.move_flange(above, deck.flange_T_deck)
-    await run.lower_flange(base_T_flange, deck.flange_T_deck)
+    await run.move_near_frame(base_T_flange, deck.flange_T_deck)
     return AtStandOff(
         run, deck.frame, deck.flange_T_deck, commanded=commanded, base_T_flange=base_T_flange
     )

@@ -96,7 +96,7 @@ def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
     async def up_and_down() -> None:
         await run.move_flange(above, world.flange_T_deck)
         lower = RigidTransform.from_translation([0, 0, -0.015]) * above
-        await run.lower_flange(lower, world.flange_T_deck)
+        await run.move_near_frame(lower, world.flange_T_deck)
 
     run_simulated(world.start_s, world.advance, up_and_down)
     assert world.guard.trip is None
@@ -112,7 +112,7 @@ def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
     run, below = run_on(world), raised(world, -0.013)
 
     async def down() -> None:
-        await run.lower_flange(below, world.flange_T_deck)
+        await run.move_near_frame(below, world.flange_T_deck)
 
     with pytest.raises(ForceLimitExceeded, match="Fz"):
         run_simulated(world.start_s, world.advance, down)
@@ -120,6 +120,19 @@ def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
     assert stopped[2] > 1.5e-3, "where it met the frame, and no farther"
     assert world.controller.latched
     assert not world.arm.moving(world.world.time_s)
+
+
+def test_a_deck_that_is_thicker_than_stated_meets_its_frame_slowly() -> None:
+    # The bound of `docs/mating.md`, "Over the station": what is pressed until the arm stands.
+    world = MatingCell.drawn(9, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    run, below = run_on(world), raised(world, -0.013)
+
+    async def down() -> None:
+        await run.move_near_frame(below, world.flange_T_deck)
+
+    with pytest.raises(ForceLimitExceeded):
+        run_simulated(world.start_s, world.advance, down)
+    assert world.world.payload.peak_contact_force_n < 28.0 + 1e6 * 0.002 * LATENCY_S
 
 
 @pytest.mark.long

@@ -17,8 +17,8 @@ from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.guard.settling import Settling
 from cellctl.processes.deck_to_frame.moves.lift_off import (
     LIFT_M,
+    NEAR_SPEED_M_S,
     SLOW_LIFT_M,
-    SLOW_SPEED_M_S,
     first_lift_speed_m_s,
     lift_off,
 )
@@ -44,8 +44,8 @@ async def test_a_seated_deck_is_lifted_straight_and_slowly_at_first(bench: Bench
     assert [move.kind for move in main.moves] == ["linear"] * 3
     up_m = [[0, 0, FIRST_LIFT_M], [0, 0, SLOW_LIFT_M], [0, 0, LIFT_M]]
     np.testing.assert_allclose(lifts(bench), up_m, atol=1e-12)
-    assert main.moves[0].speed < 0.1 * SLOW_SPEED_M_S
-    assert main.moves[1].speed == SLOW_SPEED_M_S
+    assert main.moves[0].speed < 0.1 * NEAR_SPEED_M_S
+    assert main.moves[1].speed == NEAR_SPEED_M_S
     assert (start.rotation.inv() * main.flange.rotation).magnitude() < 1e-12
 
 

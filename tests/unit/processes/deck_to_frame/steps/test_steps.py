@@ -99,12 +99,13 @@ async def test_the_last_stretch_down_is_slow_and_watched(rig: RunRig) -> None:
     stand_off = await at_the_stand_off(rig)
     above, down = rig.bench.cell.main.moves[-2:]
     assert above.speed == pytest.approx(0.05)
-    assert down.speed == pytest.approx(stand_off.run.recipe.mating.fast_speed_mm_s * 1e-3)
+    assert down.speed == pytest.approx(0.002)
+    assert down.speed < stand_off.run.recipe.mating.fast_speed_mm_s * 1e-3
     height_mm = (above.target.translation - down.target.translation)[2] * 1e3
     assert height_mm == pytest.approx(stand_off.run.recipe.station_tolerance_mm, rel=1e-4)
     _, wide, tight = rig.bench.cell.guard.limits
     assert wide.filtered[2] == pytest.approx(2 * 200.0 * 0.2 + 50.0)
-    assert tight.filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 50.0)
+    assert tight.filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 20.0)
     assert rig.bench.cell.guard.asked.count("tare") == 2
     assert rig.bench.cell.guard.asked[-1] == "disarm"
 
@@ -125,6 +126,16 @@ async def test_what_is_met_over_the_station_stops_the_run(rig: RunRig) -> None:
         await going
     assert len(main.moves) == moves + 1
     assert main.latched
+
+
+async def test_a_correction_is_as_slow_as_the_last_stretch_down(rig: RunRig) -> None:
+    stand_off = await at_the_stand_off(rig)
+    rig.bench.world.robot_error *= pose_from_xyzabc([0.6, -0.4, 0.3, 0.05, 0.03, -0.02])
+    moves = len(rig.bench.cell.main.moves)
+    await correct_pose(stand_off)
+    corrections = rig.bench.cell.main.moves[moves:]
+    assert [one.speed for one in corrections] == [pytest.approx(0.002)]
+    assert rig.bench.cell.guard.limits[-1].filtered[2] == pytest.approx(2 * 200.0 * 0.02 + 20.0)
 
 
 async def test_the_correction_ends_within_the_thresholds(rig: RunRig) -> None:
