@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cellctl.records.entries import Calibration
-from cellctl.records.report.text import MISSING, fixed, number, when
+from cellctl.records.report.text import MISSING, fixed, number, standard_uncertainty, when
 
 _DECIMALS = (3, 3, 3, 4, 4, 4)
 
@@ -125,7 +125,9 @@ def _pose_line(parent: str, child: str, pose: Mapping[str, Any]) -> PoseLine:
         parent=parent.replace("_", " ").upper(),
         child=child.replace("_", " ").upper(),
         values=tuple(fixed(value, decimals) for value, decimals in values),
-        sigmas=tuple(fixed(s, d + 1) for s, d in zip(sigmas.tolist(), _DECIMALS, strict=True)),
+        sigmas=tuple(
+            standard_uncertainty(s, d + 1) for s, d in zip(sigmas.tolist(), _DECIMALS, strict=True)
+        ),
     )
 
 

@@ -32,6 +32,7 @@ from cellctl.records.report.text import (
     number,
     plain,
     quantity,
+    standard_uncertainty,
     when,
 )
 from cellctl.records.run_recorder import EXPOSURES
@@ -169,7 +170,7 @@ def _pose_row(entry: RecordedPose, tabulated: frozenset[str]) -> TableRow:
 
 
 def _with_sigma(value: float | None, sigma: float | None, places: int) -> TableCell:
-    small = "" if sigma is None else f"± {fixed(sigma, places + 1)}"
+    small = "" if sigma is None else standard_uncertainty(sigma, places + 1)
     return TableCell(fixed(value, places), small)
 
 
@@ -177,7 +178,7 @@ def _pass_row(entry: LoopPass) -> TableRow:
     components = (
         TableCell(
             fixed(component.value, decimals(component.unit), signed=True),
-            f"± {fixed(component.sigma, decimals(component.unit))}",
+            standard_uncertainty(component.sigma, decimals(component.unit)),
         )
         for component in entry.components
     )

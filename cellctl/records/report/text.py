@@ -100,6 +100,11 @@ def fixed(value: float | None, decimals: int, *, signed: bool = False) -> str:
     return text.replace("-", "−")
 
 
+def standard_uncertainty(sigma: float | None, decimals: int) -> str:
+    """``u 0.0012``: not written with ±, which stands for an expanded one (JCGM 100, 7.2.2)."""
+    return f"u {fixed(sigma, decimals)}"
+
+
 def decimals(unit: str) -> int:
     """Decimals of an error in a unit."""
     return _DECIMALS.get(unit, 3)

@@ -40,16 +40,19 @@ class SeatError:
         """Expanded uncertainty of the gap."""
         return COVERAGE_FACTOR * float(np.sqrt(self.covariance[2, 2])) / MM
 
+    def rotations(self, limits_deg: Sequence[float]) -> tuple["SeatRotation", ...]:
+        """About x, y and z of the frame, each with its limit."""
+        found_deg = np.degrees(np.abs(self.error[3:])).tolist()
+        uncertainty_deg = COVERAGE_FACTOR * np.degrees(np.sqrt(np.diag(self.covariance)[3:]))
+        columns = zip("xyz", found_deg, uncertainty_deg.tolist(), limits_deg, strict=True)
+        return tuple(SeatRotation(*values) for values in columns)
+
     def rotation(self, limits_deg: Sequence[float]) -> "SeatRotation":
         """About the axis with the least room to its limit; limits about x, y and z of the frame."""
-        found_deg = np.degrees(np.abs(self.error[3:]))
-        uncertainty_deg = COVERAGE_FACTOR * np.degrees(np.sqrt(np.diag(self.covariance)[3:]))
-        room_deg = np.asarray(limits_deg) - found_deg - uncertainty_deg
+        all_three = self.rotations(limits_deg)
+        room_deg = [one.acceptance_deg - one.value_deg for one in all_three]
         # A rotation that is not a number has the least room of all: argmin finds it first.
-        axis = int(np.argmin(room_deg))
-        return SeatRotation(
-            "xyz"[axis], float(found_deg[axis]), float(uncertainty_deg[axis]), limits_deg[axis]
-        )
+        return all_three[int(np.argmin(room_deg))]
 
 
 @dataclass(frozen=True, slots=True)

@@ -19,6 +19,8 @@ from cellctl.processes.deck_to_frame.record.keys import (
     PIN_OFFSETS,
     POSITION_ERROR,
     SEAT_ROTATION,
+    SEATED_ERROR,
+    SEATED_SIGMA,
     UNCERTAINTY,
     WORST_RESIDUAL,
 )
@@ -136,8 +138,8 @@ def seat_record(seat: SeatError, recipe: DeckRecipe) -> dict[str, Any]:
     """The seated deck as plain data, in mm and degrees, with expanded uncertainties."""
     rotation = seat.rotation(recipe.seated_limits_deg)
     return {
-        "seated_error_mm_deg": in_mm_deg(seat.error).tolist(),
-        "seated_sigma_mm_deg": in_mm_deg(np.sqrt(np.diag(seat.covariance))).tolist(),
+        f"{SEATED_ERROR}_mm_deg": in_mm_deg(seat.error).tolist(),
+        f"{SEATED_SIGMA}_mm_deg": in_mm_deg(np.sqrt(np.diag(seat.covariance))).tolist(),
         f"{PIN_OFFSETS}_mm": dict(seat.offsets_mm),
         f"{GAP_BY_VISION}_mm": seat.gap_mm,
         f"{SEAT_ROTATION}_deg": rotation.value_deg,
@@ -168,4 +170,10 @@ def seat_limits_of(seat: SeatError, recipe: DeckRecipe) -> Mapping[str, Limit]:
         },
         GAP_BY_VISION: Limit(-gap_mm, gap_mm),
         SEAT_ROTATION: Limit(upper=seat.rotation(recipe.seated_limits_deg).acceptance_deg),
+        **{
+            f"{SEATED_ERROR}.r{rotation.axis}": Limit(
+                -rotation.acceptance_deg, rotation.acceptance_deg
+            )
+            for rotation in seat.rotations(recipe.seated_limits_deg)
+        },
     }

@@ -26,6 +26,7 @@ TARGET_FORCE, LIMIT_FORCE, PEAK_FORCE = "target_force", "limit_force", "peak_for
 POSITION_ERROR, ANGLE_ERROR = "position_error", "angle_error"
 PIN_OFFSETS = "pin_offsets"
 GAP_BY_VISION, SEAT_ROTATION = "seat_gap_by_vision", "seat_rotation"
+SEATED_ERROR, SEATED_SIGMA = "seated_error", "seated_sigma"
 FORCE_WHILE_VERIFIED = "force_while_verified"
 UNCERTAINTY = "uncertainty"
 """Ends the key of the expanded uncertainty of a figure (docs/decisions/0016)."""

@@ -1,11 +1,13 @@
 """What an assembly must fulfil: the seated deck first, then the mating, then the way there."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
+from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.processes.deck_to_frame.record import keys
-from cellctl.processes.deck_to_frame.record.worst_component import expanded, worst_component
+from cellctl.processes.deck_to_frame.record.worst_component import expanded
 from cellctl.records.entries import RunRecord
-from cellctl.records.figures import KNOWN_TO
+from cellctl.records.figures import KNOWN_TO, Limit
 from cellctl.records.parts import mate_serial
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
@@ -96,7 +98,7 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
         RequirementGroup(
             "Deck at the stand-off, before mating",
             tuple(_before_mating(record)),
-            "worst axis of the last pass, in the axes of the frame; ends the correction and is no "
+            "last pass, in the axes of the frame; ends the correction and is no "
             "requirement on the part",
         ),
         RequirementGroup(
@@ -123,31 +125,52 @@ def _seated(record: RunRecord) -> Iterator[Requirement]:
     wanted += [
         (keys.GAP_BY_VISION, "gap deck to frame, by vision",
          f"{keys.GAP_BY_VISION}_{keys.UNCERTAINTY}"),
-        (keys.SEAT_ROTATION, "rotation deck to frame, worst axis",
-         f"{keys.SEAT_ROTATION}_{keys.UNCERTAINTY}"),
     ]  # fmt: skip
     for key, title, uncertainty in wanted:
-        found = guarded(record, key, title, uncertainty)
+        found = guarded(record, key, title, record.value(uncertainty))
         if found is not None:
             yield found
+    yield from _rotations(record)
+
+
+def _rotations(record: RunRecord) -> Iterator[Requirement]:
+    """About each axis, whose limits differ; runs of earlier versions judged the worst one alone."""
+    axes = [
+        guarded(
+            record,
+            f"{keys.SEATED_ERROR}.r{axis}",
+            f"rotation deck to frame about {axis}",
+            _times_coverage(record.value(f"{keys.SEATED_SIGMA}.r{axis}")),
+        )
+        for axis in "xyz"
+    ]
+    judged = [replace(found, stands_for=keys.SEAT_ROTATION) for found in axes if found is not None]
+    title, known = "rotation deck to frame, worst axis", f"{keys.SEAT_ROTATION}_{keys.UNCERTAINTY}"
+    worst = guarded(record, keys.SEAT_ROTATION, title, record.value(known))
+    yield from judged or ([] if worst is None else [worst])
 
 
 def _before_mating(record: RunRecord) -> Iterator[Requirement]:
-    for key, title, part in (
-        (keys.POSITION_ERROR, "position error", slice(0, 3)),
-        (keys.ANGLE_ERROR, "angle error", slice(3, 6)),
-    ):
-        found = of_figure(record, key, title, expanded=_expanded(record, part))
-        if found is not None:
-            yield found
+    """Every component of the last pass with its own threshold."""
+    for key, part in ((keys.POSITION_ERROR, slice(0, 3)), (keys.ANGLE_ERROR, slice(3, 6))):
+        worst = record.newest_figures.get(key)
+        for component in record.passes[-1].components[part] if record.passes else ():
+            if component.limit is not None:
+                limit = Limit(-component.limit, component.limit)
+                yield Requirement(
+                    title=f"error {component.name}",
+                    value=component.value,
+                    unit=component.unit,
+                    required=limit,
+                    verdict=limit.judge(component.value),
+                    expanded=expanded(component),
+                    phase=None if worst is None else worst.phase,
+                    stands_for=key,
+                )
 
 
-def _expanded(record: RunRecord, part: slice) -> float | None:
-    """Expanded uncertainty of the component that the row shows; from the pass, because runs of
-    earlier versions have no figure of it."""
-    if not record.passes:
-        return None
-    return expanded(worst_component(record.passes[-1].components[part]))
+def _times_coverage(sigma: float | None) -> float | None:
+    return None if sigma is None else COVERAGE_FACTOR * sigma
 
 
 def _found(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:

@@ -19,6 +19,7 @@ from cellctl.records.report.sections import (
     ReportBlock,
     ReportSection,
 )
+from cellctl.records.report.text import standard_uncertainty
 from cellctl.records.units import words
 
 
@@ -67,5 +68,8 @@ def _statistics(curve: ForceCurve) -> Sequence[tuple[str, str]]:
         ("peak Fz, mean of 5 ms", f"{figures.peak_filtered_fz_n:.2f} N"),
         ("peak lateral force", f"{figures.peak_lateral_n:.2f} N"),
         ("peak moment", f"{figures.peak_moment_n_m:.2f} N·m"),
-        ("final Fz", f"{figures.final[2]:.2f} ± {figures.final_sigma[2]:.2f} N"),
+        (
+            "final Fz",
+            f"{figures.final[2]:.2f} N, {standard_uncertainty(figures.final_sigma[2], 2)} N",
+        ),
     ]

@@ -8,11 +8,13 @@ from cellctl.processes.deck_to_frame.record.keys import (
     PIN_OFFSETS,
     SEAT_ROTATION,
 )
+from cellctl.processes.deck_to_frame.record.worst_component import worst_component
 from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM
 from cellctl.records.entries import Figure, Gauge, LoopPass, RunRecord, Verdict
+from cellctl.records.figures import Limit
 from cellctl.records.files.curve_file import Recording
 from cellctl.records.report.sections import Tile
-from cellctl.records.report.text import decimals, fixed, number, with_unit
+from cellctl.records.report.text import decimals, fixed, quantity, with_unit
 
 
 def tiles(record: RunRecord, curves: Iterable[Recording]) -> tuple[Tile, ...]:
@@ -48,12 +50,12 @@ def _errors(passes: Sequence[LoopPass]) -> Iterator[Tile]:
         return
     last = passes[-1]
     for title, part in (("Position error", slice(0, 3)), ("Angle error", slice(3, 6))):
-        components = last.components[part]
-        unit = components[0].unit
-        worst = max(abs(component.value or 0.0) for component in components)
-        bound = max(component.limit or 0.0 for component in components)
-        text = f"worst axis, threshold {number(bound)} {unit}"
-        yield Tile(title, f"{worst:.{decimals(unit)}f} {unit}", text, worst <= bound)
+        worst = worst_component(last.components[part])
+        size = None if worst.value is None else abs(worst.value)
+        value = with_unit(fixed(size, decimals(worst.unit)), worst.unit)
+        text = f"{worst.name}, threshold {quantity(worst.limit, worst.unit)}"
+        verdict = Limit(upper=worst.limit).judge(size)
+        yield Tile(title, value, text, verdict is Verdict.PASS)
     ended = "last one within" if last.converged else "not within"
     yield Tile("Loop measurements", str(len(passes)), ended, last.converged)
 

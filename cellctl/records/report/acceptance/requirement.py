@@ -27,6 +27,8 @@ class Requirement:
     """Number of the phase in which the value was found."""
     figure: str = ""
     """Key of the figure that it shows, so that it is not shown twice."""
+    stands_for: str = ""
+    """Key of a figure with a limit that is the worst of this and further lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +59,12 @@ def of_figure(
     )
 
 
-def guarded(record: RunRecord, key: str, title: str, uncertainty_key: str) -> Requirement | None:
-    """A figure that was judged by its limit less its expanded uncertainty, a figure itself.
+def guarded(record: RunRecord, key: str, title: str, expanded: float | None) -> Requirement | None:
+    """A figure that was judged by its limit less its expanded uncertainty.
 
     The record keeps the narrower limit, by which the verdict was reached; the required one is wider
     by the uncertainty on both sides.
     """
-    expanded = record.value(uncertainty_key)
     plain = of_figure(record, key, title, expanded=expanded)
     if plain is None or expanded is None:
         return plain

@@ -26,8 +26,10 @@ TITLE = "Acceptance"
 _COLUMNS = ("requirement", "measured", "U", "required", "accepted", "verdict", "found in")
 _LEGEND = (
     f"U: expanded uncertainty, coverage factor k = {COVERAGE_FACTOR:g}, level of confidence about "
-    "95 % (JCGM 100): the value is known to ± U. Where a row has an accepted range, it is the "
-    "required one less U, and the measured value must lie in it (JCGM 106, guarded acceptance). "
+    "95 % (JCGM 100): the value is known to ± U. In the other tables of this report u is a "
+    "standard uncertainty, one standard deviation; ± stands for U and for limits alone. Where a "
+    "row has an accepted range, it is the required one less U, and the measured value must lie in "
+    "it (JCGM 106, guarded acceptance). "
     "A row without an accepted range is judged by the required one alone, and not decided where "
     "its value lies within that by less than U (ISO 14253-1). A dash as U means that no "
     "uncertainty was evaluated. Plug gauges are optional and entered by hand after a run; one that "
@@ -138,7 +140,8 @@ def _gauge(record: RunRecord, hole: str, limit: Limit) -> Requirement:
 
 
 def _others(record: RunRecord, brought: Iterable[RequirementGroup]) -> Iterator[RequirementGroup]:
-    shown = {entry.figure for group in brought for entry in group.requirements}
+    lines = [entry for group in brought for entry in group.requirements]
+    shown = {entry.figure for entry in lines} | {entry.stands_for for entry in lines}
     found = (of_figure(record, key) for key in record.newest_figures if key not in shown)
     rows = tuple(entry for entry in found if entry is not None)
     yield RequirementGroup("Further figures with a limit" if shown else "Figures", rows)

@@ -4,9 +4,12 @@ import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from datetime import UTC, datetime
 from math import isclose
 from pathlib import Path
+from types import SimpleNamespace
+from typing import cast
 from xml.etree import ElementTree as ET
 
 import numpy as np
@@ -14,6 +17,15 @@ import pytest
 
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.plot_style import envelope
+from cellctl.processes.deck_to_frame.poses.seat_error import SeatError
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.record.entries import (
+    error_figures,
+    seat_limits_of,
+    seat_record,
+)
+from cellctl.processes.deck_to_frame.record.keys import COMPONENTS
+from cellctl.processes.deck_to_frame.report.acceptance import acceptance
 from cellctl.processes.deck_to_frame.report.force_plot import (
     force_by_time,
     force_by_travel,
@@ -21,16 +33,27 @@ from cellctl.processes.deck_to_frame.report.force_plot import (
 from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
+from cellctl.processes.deck_to_frame.report.tiles import tiles
 from cellctl.records import RunStore
-from cellctl.records.entries import Document, Gauge
+from cellctl.records.entries import (
+    Document,
+    Gauge,
+    LoopPass,
+    PassComponent,
+    RunRecord,
+    Verdict,
+)
+from cellctl.records.figures import split_document
 from cellctl.records.files.curve_file import encode_curve
 from cellctl.records.files.mcap_reading import MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
+from cellctl.records.report.acceptance.table import acceptance as acceptance_table
 from cellctl.records.report.export import export_run
+from cellctl.records.report.sections import ReportTable
 from tests.rigs.grey import confusable
 from tests.unit.records.conftest import start
 from tests.unit.records.page import read, text_of
-from tests.unit.records.sample import force_curve, good_run
+from tests.unit.records.sample import SIGMA, force_curve, good_run
 
 
 @pytest.fixture
@@ -134,6 +157,70 @@ def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
     text = text_of(export_run(store, start(store), tmp_path, pages=pages))
     for section in ("Holes", "Measure and compensate", "Mating under force", "Pin holes"):
         assert section not in text
+
+
+def test_every_axis_limit_has_a_line_of_its_own(store: RunStore) -> None:
+    run = start(store)
+    components = tuple(
+        PassComponent(*head, value, sigma, limit)
+        for head, value, sigma, limit in zip(
+            COMPONENTS,
+            (0.01, -0.02, 0.03, 0.0120, -0.0075, 0.001),
+            SIGMA,
+            (0.05, 0.05, 0.05, 0.014, 0.006, 0.006),
+            strict=True,
+        )
+    )
+    last = LoopPass("pose correction", 1, components, False)
+    store.add(run, last)
+    for found in error_figures(last):
+        store.add(run, found)
+    seat = SeatError(
+        np.array([0.0, 0.0, 0.0, *np.radians([0.012, 0.008, 0.001])]),
+        np.eye(6) * np.radians(0.001) ** 2,
+        {},
+        {},
+    )
+    limits = (0.02, 0.01, 0.01)
+    recipe = SimpleNamespace(seated_gap_limit_mm=0.1, seated_limit_mm=0.2, seated_limits_deg=limits)
+    document = seat_record(seat, cast(DeckRecipe, recipe))
+    for found in split_document(document, seat_limits_of(seat, cast(DeckRecipe, recipe)))[0]:
+        store.add(run, found)
+    record = store.run(run)
+    lines = {line.title: line for group in acceptance(record) for line in group.requirements}
+    # About y the threshold is the stricter one, and is not hidden behind the greater one about x.
+    assert [(lines[f"error {axis}"].required.upper, lines[f"error {axis}"].verdict) for axis in
+            ("rx", "ry", "rz")] == [
+        (0.014, Verdict.PASS), (0.006, Verdict.FAIL), (0.006, Verdict.PASS),
+    ]  # fmt: skip
+    about = [lines[f"rotation deck to frame about {axis}"] for axis in "xyz"]
+    assert [line.required.upper for line in about] == pytest.approx(limits)
+    assert [line.expanded for line in about] == pytest.approx([0.002] * 3)
+    assert about[1].accepted.upper == pytest.approx(0.008)
+    everything = acceptance_table(record, acceptance(record)).blocks[0]
+    assert isinstance(everything, ReportTable)
+    titles = [row.cells[0].text for row in everything.rows]
+    assert not any("worst" in title or title == "rotation" for title in titles), titles
+    tile = next(one for one in tiles(record, ()) if one.title == "Seated: rotation")
+    assert tile.passed is not None
+    errors = {one.title: one for one in tiles(replace_figures(record), ())}
+    assert "ry, threshold 0.006°" in errors["Angle error"].bound
+    assert errors["Angle error"].passed is False
+
+
+def replace_figures(record: RunRecord) -> RunRecord:
+    """The run as it is when it ended before the seat was measured."""
+    return replace(record, figures=())
+
+
+def test_a_plus_minus_stands_for_u_and_for_limits_alone(store: RunStore, tmp_path: Path) -> None:
+    page = read(export_run(store, good_run(store), tmp_path, pages=pages))
+    limits = {"± 0.05", "± 0.005"}
+    found = {text for text in page.texts if "±" in text and "U" not in text}
+    assert all(any(text.startswith(one) for one in limits) for text in found), found
+    text = " ".join(page.texts)
+    assert "u 0.0040" in text
+    assert text.count("u is a standard uncertainty") == 1
 
 
 OLD = Path(__file__).parents[4] / "data" / "store-v1"
