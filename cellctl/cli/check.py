@@ -1,7 +1,6 @@
 """`cellctl check`: everything that is wrong with a cell file; with `--connect` its devices too."""
 
 import grp
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -15,6 +14,7 @@ from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig
 from cellctl.config.checks.arms.needs import ArmNeeds, rooms
+from cellctl.config.checks.plausible.mounted import how_it_lies
 from cellctl.config.checks.zones import taught_in_zone
 from cellctl.config.commissioning import Examination, examine_before_commissioning
 from cellctl.config.document.lines import FILL_IN, left_open
@@ -23,7 +23,6 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.roles import lacking_roles
-from cellctl.geometry.pose import pose_from_xyzabc
 
 if TYPE_CHECKING:
     from cellctl.cli.connecting.answer import Answer
@@ -216,16 +215,8 @@ def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[Ar
 
 
 def _say_how_sensors_lie(console: Console, cell: CellConfig) -> None:
-    """The turn of each force sensor about its axis: before the first weighing nothing in the file
-    contradicts a wrong one."""
     for name, sensor in cell.force_sensors.items():
-        x, y, _ = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()[:, 0]
-        turned_deg = math.degrees(math.atan2(y, x))
-        text = (
-            f"its x is turned by {turned_deg:.0f} deg about z of the flange: a push by hand shows "
-            "whether it is (the force in `cellctl status`)"
-        )
-        console.print(f"  {f'force_sensors.{name}':32} {text}", markup=False)
+        console.print(f"  {f'force_sensors.{name}':32} {how_it_lies(sensor)}", markup=False)
 
 
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:

@@ -6,9 +6,12 @@ and no limit is armed.
 
 import select
 import threading
+from collections.abc import Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from cellctl import plugins
 from cellctl.cli.connecting.answer import Answer, spread_ms
@@ -16,7 +19,7 @@ from cellctl.cli.connecting.blocking import in_thread
 from cellctl.clock import now_s
 from cellctl.config.devices import DeviceConfig, ForceSensorConfig
 from cellctl.config.driver_settings import sensor_rate_hz
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.interfaces import FtSensor, StopChannel
 from cellctl.interfaces.ft_sensor import FtHealth
 from cellctl.interfaces.stop_channel import FlangeState
@@ -43,13 +46,16 @@ async def ask_stop_channel(
 def _sensor(name: str, config: ForceSensorConfig, ended: threading.Event) -> Answer:
     sensor: FtSensor = _driver(plugins.FT_SENSOR, config)
     times_s: list[float] = []
+    forces_n: list[tuple[float, ...]] = []
     began_s = now_s()
     sensor.open()
     try:
         connect_s = now_s() - began_s
         end_s = now_s() + LISTEN_S
         while now_s() < end_s and not ended.is_set():
-            times_s += [sample.receive_time_s for sample in sensor.read(_LOOK_S)]
+            samples = sensor.read(_LOOK_S)
+            times_s += [sample.receive_time_s for sample in samples]
+            forces_n += [(sample.fx_n, sample.fy_n, sample.fz_n) for sample in samples]
         serial_number, health = sensor.serial_number(), sensor.health()
     finally:
         sensor.close()
@@ -58,11 +64,23 @@ def _sensor(name: str, config: ForceSensorConfig, ended: threading.Event) -> Ans
         "connected after": f"{connect_s:.2f} s",
         "samples": f"{len(times_s)} in {LISTEN_S:g} s, {health.rate_hz:.1f} Hz by its own count",
         "apart": spread_ms(gaps_s),
+        **felt(forces_n, config),
     }
     notes = (*_rate(health, sensor_rate_hz(config)), *_late(gaps_s, config), *_bad(health))
     return Answer(
         f"force_sensors.{name}", config.driver, facts, serial_number=serial_number, notes=notes
     )
+
+
+def felt(forces_n: Sequence[tuple[float, ...]], config: ForceSensorConfig) -> dict[str, str]:
+    """The mean force in the axes of the flange, by the place of the sensor in the cell file: a push
+    by hand shows whether that place, and the signs, are right."""
+    if not forces_n:
+        return {}
+    flange_R_sensor = pose_from_xyzabc(config.flange_T_sensor).rotation
+    x_n, y_n, z_n = flange_R_sensor.apply(np.mean(forces_n, axis=0))
+    felt = f"x {x_n:.1f}  y {y_n:.1f}  z {z_n:.1f} N in axes of the flange"
+    return {"force": f"{felt}, weight and offset included"}
 
 
 def _rate(health: FtHealth, set_hz: float) -> tuple[str, ...]:

@@ -46,14 +46,27 @@ def test_a_cell_with_recipes_is_not_told_what_it_lacks_for_others() -> None:
     assert "process " not in done.stdout
 
 
-@pytest.mark.parametrize(("written_deg", "said"), [("0.0", "0 deg"), ("90.0", "90 deg")])
-def test_it_says_how_a_force_sensor_is_turned(tmp_path: Path, written_deg: str, said: str) -> None:
-    """In a cell that weighs nothing no other value contradicts it."""
-    old = "flange_T_sensor = [0.0, 0.0, 30.0, 0.0,"
-    new = f"flange_T_sensor = [0.0, 0.0, 30.0, {written_deg},"
-    path = written(tmp_path / "cell", "insertion-pin.toml", old, new)
+_PLACE = "flange_T_sensor = [0.0, 0.0, 30.0, "
+
+
+@pytest.mark.parametrize("name", ["insertion-pin.toml", "antenna.toml"])
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("", "", "its z points along that of the flange, its x is turned by 0 deg about z"),
+        (f"{_PLACE}0.0, ", f"{_PLACE}90.0, ", "its x is turned by 90 deg about z of the flange"),
+        (f"{_PLACE}0.0, 0.0, 0.0]", f"{_PLACE}0.0, 0.0, 180.0]", "its z points against that of"),
+        ("max_lag_s = 0.9,", "max_lag_s = 0.9, inverted = true,", "turns all its signs"),
+    ],
+)
+def test_it_says_how_a_force_sensor_lies(
+    tmp_path: Path, name: str, old: str, new: str, said: str
+) -> None:
+    """In a cell that weighs nothing no other value contradicts it: a push by hand does."""
+    path = written(tmp_path / "cell", name, old, new)
     done = CliRunner().invoke(whole_app(), ["check", str(path)])
-    assert f"its x is turned by {said} about z of the flange" in done.stdout
+    assert said in done.stdout
+    assert "while the tool is pushed towards the flange" in done.stdout
 
 
 def test_what_the_daemon_needs_of_its_pc_is_a_hint(tmp_path: Path) -> None:

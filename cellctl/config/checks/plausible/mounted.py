@@ -1,10 +1,12 @@
 """What is mounted on flanges: too far away, turned back to the arm, or lying on its side."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.document.leaves import leaves
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import pose_from_xyzabc
@@ -71,3 +73,22 @@ def mounted_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
             )
             written = str(list(sensor.flange_T_sensor))
             yield ConfigIssue(f"force_sensors.{name}.flange_T_sensor", written, said)
+
+
+def how_it_lies(sensor: ForceSensorConfig) -> str:
+    """What a push by hand must show of a force sensor, by the file.
+
+    Before a first weighing nothing in the file contradicts a wrong turn or a wrong sign, and a cell
+    without a load that is weighed never has one.
+    """
+    axes = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()
+    turned_deg = math.degrees(math.atan2(axes[1, 0], axes[0, 0]))
+    along = "along" if axes[2, 2] > 0.0 else "against"
+    # By convention a driver that can turn all signs names it so.
+    signs = "; inverted = true turns all its signs" if sensor.settings.get("inverted") else ""
+    return (
+        f"its z points {along} that of the flange, its x is turned by {turned_deg:.0f} deg about z "
+        f"of the flange{signs}. A push by hand shows whether it is: while the tool is pushed "
+        "towards the flange, `cellctl check --connect` must show less along z (more negative) than "
+        "at rest; while it is pushed along x of the flange, more along x"
+    )

@@ -7,8 +7,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from cellctl.cli.connecting.guards import LISTEN_S, heard_from
+from cellctl.cli.connecting.guards import LISTEN_S, felt, heard_from
 from cellctl.clock import now_s
+from cellctl.config.devices import DeviceConfig, ForceSensorConfig
 from cellctl.interfaces import StopChannel
 from cellctl.interfaces.stop_channel import FlangeState
 
@@ -71,3 +72,26 @@ def test_heartbeats_go_on_until_the_robots_were_asked(channel: Channel, end: str
     assert reports
     assert all(report.time_s < began_s + LISTEN_S + 0.3 for report in reports)
     assert channel.stops == 0
+
+
+@pytest.mark.parametrize(
+    ("turns_deg", "said"),
+    [
+        ((0.0, 0.0, 0.0), "x 1.0  y 2.0  z -30.0 N"),
+        ((0.0, 0.0, 180.0), "x 1.0  y -2.0  z 30.0 N"),
+        ((90.0, 0.0, 0.0), "x -2.0  y 1.0  z -30.0 N"),
+    ],
+)
+def test_the_force_is_said_in_axes_of_the_flange(
+    turns_deg: tuple[float, float, float], said: str
+) -> None:
+    """A sensor that is written upside down shows a push towards the flange as one away from it."""
+    sensor = ForceSensorConfig(
+        driver="sri",
+        mounted_on="arm",
+        flange_T_sensor=(0.0, 0.0, 30.0, *turns_deg),
+        stop_channel=DeviceConfig(driver="siasun-sjl"),
+    )
+    facts = felt([(1.0, 1.0, -29.0), (1.0, 3.0, -31.0)], sensor)
+    assert facts["force"].startswith(said)
+    assert felt([], sensor) == {}
