@@ -138,7 +138,9 @@ def camera(
     """Calibrate a single camera from images of a chessboard, ChArUco board or circle grid."""
     pattern = board_of(board, square_mm, charuco, marker_mm, circle_mm, asymmetric=asymmetric)
     earlier = None if known_board is None else read_known_board(known_board)
-    named = [BoardImage(path.stem, read_image(path)) for path in _matching(images)]
+    paths = _matching(images)
+    _require_one_camera(paths)
+    named = [BoardImage(path.stem, read_image(path)) for path in paths]
     found = detect_camera_views(named, pattern)
     console = console_of_figures()
     _say_left_out(console, found.not_found)
@@ -215,6 +217,22 @@ def _matching(pattern: str) -> list[Path]:
     if not found:
         raise FileInvalid(f"no file matches {pattern}")
     return [Path(one) for one in found]
+
+
+def _require_one_camera(paths: Sequence[Path]) -> None:
+    """Images that are named as left and right ones are of two cameras."""
+    left = {path.stem.lower().replace("left", "", 1): path for path in paths if _says(path, "left")}
+    for path in paths:
+        other = left.get(path.stem.lower().replace("right", "", 1))
+        if other is not None and _says(path, "right"):
+            raise FileInvalid(
+                f"{other.name} and {path.name} are named as of two cameras: narrow --images to "
+                "those of one"
+            )
+
+
+def _says(path: Path, side: str) -> bool:
+    return side in path.stem.lower()
 
 
 def _say_left_out(console: Console, not_found: Sequence[str]) -> None:

@@ -18,7 +18,7 @@ from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.force.gravity.payload import PayloadIdentification, identify_payload, rms_residuals
 from cellctl.force.gravity.pose_file import PoseRecord
 from cellctl.force.gravity.poses import PoseRole
-from cellctl.force.gravity.signs import reversed_axis_check
+from cellctl.force.gravity.signs import reversed_axis_check, torque_axes_check
 from cellctl.geometry.pose import MM
 
 
@@ -60,6 +60,7 @@ def evaluate_payload(
     identification = identify_payload(fit.base_R_sensor, fit.wrenches)
     checks = list(rigid_checks(identification, expected_mass_kg, limits))
     checks.append(reversed_axis_check(identification.rigid, fit.base_R_sensor))
+    checks.append(torque_axes_check(identification.rigid, fit.wrenches))
     affine = identification.affine
     hold_out = record.having(PoseRole.HOLD_OUT)
     if hold_out.roles:

@@ -3,7 +3,8 @@
 In contact the deck is pushed away from its seat, against the weight. A sensor that reads it the
 other way round takes a contact for a pull: it is found too late, by the limit alone. No residual
 shows that, because the compensation subtracts a weight of either sign. Nor does any show torques of
-the other sign: the centre of mass then lies on the other side of the sensor.
+the other sign, where the centre of mass lies on the other side of the sensor, or of axes that were
+exchanged.
 """
 
 import numpy as np
@@ -11,11 +12,16 @@ from scipy.spatial.transform import Rotation
 
 from cellctl.force.gravity.acceptance import PayloadCheck
 from cellctl.force.gravity.payload import Rigid12
-from cellctl.geometry.pose import MM
+from cellctl.geometry.pose import MM, Array
 
 _AXES = "xyz"
 _EXPLAINED = 0.85
 """Of an offset by another sign: above it the offset is twice the weight within 15 %."""
+_MOST_UNEXPLAINED = 0.25
+"""Half of what the mildest exchange of two axes leaves (0.51 of the sample), and far more than a
+sensor with 1 % cross-talk does (0.005)."""
+_LEAST_CHANGE_N_M = 0.2
+"""Torques that change by less are noise and cables: nothing is said of their axes."""
 _MOST_UPWARDS = 0.5
 """Share of the weight; a base that leans so far no arm has."""
 _MOST_AWAY = 0.5
@@ -42,6 +48,20 @@ def reaction_check(rigid: Rigid12) -> PayloadCheck:
     upwards = max(0.0, float(rigid.weight_n[2] / np.linalg.norm(rigid.weight_n)))
     name = "share of the weight that reads upwards (then set 'inverted' of the sensor otherwise)"
     return PayloadCheck(name, upwards, _MOST_UPWARDS, "")
+
+
+def torque_axes_check(rigid: Rigid12, wrenches: Array) -> PayloadCheck:
+    """Torques of two axes exchanged, or one alone with the other sign.
+
+    The compensation takes up any linear relation between the axes, so its residuals stay small. A
+    rigid load allows one alone, c × f. ``wrenches`` are those of the fit, shape (n, 6).
+    """
+    change_n_m = np.ptp(wrenches[:, 3:], axis=0).max()
+    spread = wrenches[:, 3:] - wrenches[:, 3:].mean(axis=0)
+    left, whole = (float(np.sqrt(np.mean(of**2))) for of in (rigid.residual[:, 3:], spread))
+    share = left / whole if change_n_m > _LEAST_CHANGE_N_M else 0.0
+    name = "share of the change of torques that no load explains, as with two axes exchanged"
+    return PayloadCheck(name, share, _MOST_UNEXPLAINED, "")
 
 
 def lever_check(rigid: Rigid12, base_R_sensor: Rotation, *, on_top: bool) -> PayloadCheck:

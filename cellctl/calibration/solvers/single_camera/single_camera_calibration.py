@@ -30,6 +30,7 @@ from cellctl.calibration.solvers.single_camera.single_camera_result import (
     CameraViewResidual,
     SingleCameraResult,
 )
+from cellctl.calibration.solvers.single_camera.two_cameras import MOST_PAIRED, share_of_pairs
 from cellctl.calibration.solvers.view_rejection import (
     MAX_REJECTED_RATIO,
     adjust_good_views,
@@ -91,6 +92,7 @@ def calibrate_single_camera(
     adjusted = adjust_good_views(
         problem, _start(start, len(modes.sigma), lens), start.fits, excluded
     )
+    paired = share_of_pairs(np.stack(start.camera_T_board))
     good, result, state = adjusted.good, adjusted.result, adjusted.result.state
     twice = {i: f"its picture is that of {views[earlier].name}" for i, earlier in again.items()}
     rejected = why_left_out([view.name for view in views], adjusted, twice)
@@ -127,6 +129,7 @@ def calibrate_single_camera(
             LimitCheck("reprojection rms", rms_px, limits.rms_px, "px"),
             LimitCheck("focal length sigma", focal_ratio, limits.focal_sigma_ratio, ""),
             LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
+            LimitCheck("views in pairs, as of the two cameras of a head", paired, MOST_PAIRED, ""),
             *_held_out_check(held_out_px, limits),
         ),
         warnings=(*_warnings(len(kept), rejected, held_out_px), *turn_warnings(board)),

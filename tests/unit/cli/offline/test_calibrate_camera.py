@@ -153,3 +153,29 @@ def test_the_board_of_an_earlier_result(images: Path, tmp_path: Path) -> None:
         result = calibrate(f"{images}/c-*.png", second, "--known-board", path)
         assert isinstance(result.exception, FileInvalid)
         assert words in str(result.exception)
+
+
+SAMPLES = Path(__file__).parents[4] / "config" / "samples" / "board"
+
+
+def of_samples(pattern: str, out: Path) -> Result:
+    arguments = ("camera", "--images", pattern, "--board", "9x6", "--square-mm", 20, "--out", out)
+    return CliRunner().invoke(app, [str(one) for one in arguments])
+
+
+def test_images_named_left_and_right_are_of_two_cameras(tmp_path: Path) -> None:
+    fault = of_samples(f"{SAMPLES}/*.png", tmp_path / "cam.json").exception
+    assert isinstance(fault, FileInvalid)
+    assert "left-01.png and right-01.png are named as of two cameras" in str(fault)
+
+
+def test_images_of_both_cameras_of_a_head_are_not_accepted(tmp_path: Path) -> None:
+    # Both cameras are nearly alike, so that one fits them all with small residuals.
+    for number, path in enumerate(sorted(SAMPLES.glob("*.png"))):
+        shutil.copy(path, tmp_path / f"image-{number:02d}.png")
+    mixed = of_samples(f"{tmp_path}/image-*.png", tmp_path / "cam.json")
+    assert mixed.exit_code == 3, mixed.output
+    said = "views in pairs, as of the two cameras of a head"
+    assert f"{said} 1 (≤ 0.5): OUT OF LIMIT" in mixed.output
+    alone = of_samples(f"{SAMPLES}/left-*.png", tmp_path / "left.json")
+    assert f"{said} 0 (≤ 0.5): ok" in alone.output

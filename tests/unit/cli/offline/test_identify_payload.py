@@ -102,6 +102,36 @@ def test_one_axis_with_the_other_sign_is_not_accepted(csv_file: Path) -> None:
     assert "FAIL  share of the offset that fz with the other sign explains" in result.output
 
 
+@pytest.mark.parametrize(
+    "written",
+    [
+        ("mz_nm", "my_nm", "mx_nm"),
+        ("my_nm", "mx_nm", "mz_nm"),
+        ("mx_nm", "mz_nm", "my_nm"),
+        ("my_nm", "mz_nm", "mx_nm"),
+    ],
+)
+def test_torques_of_exchanged_axes_are_not_accepted(
+    csv_file: Path, written: tuple[str, str, str]
+) -> None:
+    """They are compensated all the same, and a contact would turn about another axis."""
+    header, *rows = csv_file.read_text(encoding="utf-8").splitlines()
+    header = header.replace("mx_nm,my_nm,mz_nm", ",".join(written))
+    csv_file.write_text("\n".join([header, *rows]), encoding="utf-8")
+    result = CliRunner().invoke(app, [str(csv_file), "--mass-kg", "200"])
+    assert result.exit_code == 3
+    assert "FAIL  share of the change of torques that no load explains" in result.output
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_cross_talk_is_no_exchange_of_axes(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    path = tmp_path / "poses.csv"
+    path.write_text(format_pose_file(record(imperfect(rng), rng)), encoding="utf-8")
+    output = CliRunner().invoke(app, [str(path)]).output
+    assert "ok    share of the change of torques that no load explains" in output
+
+
 def test_a_sensor_that_states_reactions_is_said_with_its_setting(csv_file: Path) -> None:
     turned = rewritten(csv_file, dict.fromkeys(FORCES + MOMENTS, -1.0))
     result = CliRunner().invoke(app, [str(turned), "--mass-kg", "200"])
