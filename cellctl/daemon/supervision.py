@@ -8,6 +8,7 @@ from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.disk_watch import DiskWatch
+from cellctl.daemon.ledger_watch import LedgerWatch
 from cellctl.daemon.loop_watch import watch_loop
 from cellctl.daemon.notify import Watchdog
 from cellctl.daemon.panel_watch import PANEL_PERIOD_S, PanelWatch
@@ -22,6 +23,9 @@ PUBLISH_PERIOD_S = 0.1
 LINK_PERIOD_S = 0.25
 ASK_PERIOD_S = 2.0
 DISK_PERIOD_S = 2.0
+LEDGER_PERIOD_S = 10.0
+"""A look reads two rows of the store. Whoever cuts the ledger and lets the daemon go on is found
+before the next report is printed."""
 
 
 async def supervise(
@@ -44,6 +48,7 @@ async def supervise(
         tasks.create_task(_watch_panels(PanelWatch(cell, unit)))
         tasks.create_task(_poll_devices(cell, unit))
         tasks.create_task(_watch_disk(DiskWatch(store, unit)))
+        tasks.create_task(_watch_ledger(LedgerWatch(store, unit)))
         tasks.create_task(watch_loop(vitals.turn))
 
 
@@ -83,6 +88,12 @@ async def _watch_disk(watch: DiskWatch) -> None:
     while True:
         await watch.look()
         await asyncio.sleep(DISK_PERIOD_S)
+
+
+async def _watch_ledger(watch: LedgerWatch) -> None:
+    while True:
+        await watch.look()
+        await asyncio.sleep(LEDGER_PERIOD_S)
 
 
 class LinkMonitor:

@@ -93,6 +93,16 @@ class RunClosed(RecordsError):
     reaction = Reaction.STOP
 
 
+class RecordAltered(RecordsError):
+    """Somebody else has changed what the daemon had written: of an open run, or of the ledger."""
+
+    number = 827
+    text = "Records were changed beside the daemon"
+    cause = "Another program has written to store.sqlite, or the disk has lost what it had taken."
+    remedy = "An open run counts as bad. Keep store and journal; see `cellctl runs verify`."
+    reaction = Reaction.STOP
+
+
 class ArtefactDamaged(RecordsError):
     """A stored file is missing or not what was stored."""
 
@@ -247,10 +257,8 @@ class FleetDiffers(FleetError):
     text = "Fleet database holds other records of this cell"
     cause = "The run store was replaced or restored from a backup, two cells have one name, or "
     cause += "somebody has changed records here or there."
-    remedy = (
-        "Nothing more is delivered. Compare `cellctl runs verify` with `cellctl fleet verify`; a "
-        "store that begins anew needs a new name in the cell file and `cellctl fleet add`."
-    )
+    remedy = "Nothing more is delivered. Compare `cellctl runs verify` with `cellctl fleet verify`;"
+    remedy += " a store that begins anew needs a new name in the cell file and `cellctl fleet add`."
 
 
 class FleetOutdated(FleetError):

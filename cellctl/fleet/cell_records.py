@@ -30,12 +30,12 @@ from cellctl.records.database.sealed import (
     ACKNOWLEDGEMENT,
     ALARM,
     CALIBRATION,
-    DETAILS,
     FILLED,
     INVALIDATION,
     KINDS,
     RUN,
 )
+from cellctl.records.database.written_details import DETAILS
 from cellctl.records.seals import LedgerHead
 
 START = LedgerHead(0, GENESIS)
@@ -173,14 +173,16 @@ def _changes(connection: Connection, entry: Values) -> Iterator[Change]:
     run = row["number"] if kind.table is RunRow else row.get("run")
     if run is not None:
         yield from _opened_run(connection, run)
-    if kind.superseded:
-        yield NewestValue(table, row)
-    elif name in FILLED:
+    if name in FILLED:
         if name == RUN:
             yield from _closed_run(connection, row)
         filled = {column: row[column] for column in FILLED[name]}
         yield FilledColumns(table, {kind.key: key}, filled)
-    elif kind.table is not RunRow:
+    elif kind.table is RunRow:
+        return  # the opening is there, and details come with the closing
+    elif kind.superseded:
+        yield NewestValue(table, row)
+    else:
         left = LATER.get(name, frozenset())
         yield NewRow(table, {column: None if column in left else row[column] for column in row})
 

@@ -83,7 +83,7 @@ def problems(fleet: FleetDatabase, cell: str, printed: LedgerHead | None = None)
     ((_, place, _),) = _places(fleet, cell)
     with fleet.view(place) as session:
         behind = _still_to_come(session, ledger.head(session))
-        return list(ledger.problems(session, printed, more_to_come=behind > 0))
+        return list(ledger.problems(session, printed, is_copy=True, more_to_come=behind > 0))
 
 
 def _places(fleet: FleetDatabase, cell: str | None = None) -> Sequence[tuple[str, str, int]]:

@@ -11,10 +11,12 @@ from typing import Any, BinaryIO
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
+from cellctl.errors.records import RecordAltered
 from cellctl.records.database import ledger, reading, rows, schema, sealed
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.database.sessions import LOCK_WAIT_S, Database
 from cellctl.records.database.stored_records import LINE_SEQ, StoredRecords
+from cellctl.records.database.written_details import WrittenDetails
 from cellctl.records.entered.gauges import require_gauge, require_plausible
 from cellctl.records.entries import RunDetail, RunResult
 from cellctl.records.files.artefacts import ArtefactFolder
@@ -43,6 +45,8 @@ class RunStore(StoredRecords):
         )
         self.artefacts = ArtefactFolder(path / "files")
         self._unfinished = UnfinishedRecordings(path / "unfinished")
+        self._written: dict[int, WrittenDetails | None] = {}
+        """What this store has written of each run that it has opened, by its number."""
 
     def close(self) -> None:
         """Drop the connection. Open runs stay open, to be found as interrupted."""
@@ -60,7 +64,8 @@ class RunStore(StoredRecords):
             for row in found:
                 if (data := self._unfinished.read(row.number)) is not None and has_messages(data):
                     kept = self.artefacts.put(data), len(data)
-                    session.add(rows.artefact(row.number, MOTION, MCAP_MEDIA_TYPE, *kept))
+                    recording = rows.artefact(row.number, MOTION, MCAP_MEDIA_TYPE, *kept)
+                    rows.add_details(session, row, [recording], None)
                 rows.close(session, row, RunResult.INTERRUPTED, None, None)
             interrupted = [row.number for row in found]
         # Those of runs that were closed too: a daemon may die between storing and removing.
@@ -102,33 +107,40 @@ class RunStore(StoredRecords):
             session.add(row)
             # Sealed at once: a run that somebody deletes later leaves a gap.
             ledger.seal(session, sealed.OPENING, row, row.started)
+        self._written[row.number] = WrittenDetails()
         return row.number
 
     def add(self, run: int, *details: RunDetail) -> None:
         """Figures, poses, passes and documents of the phase that a run is in; all or none."""
         with self._database.write() as session:
-            rows.open_run(session, run)
+            row = rows.open_run(session, run)
             phase = rows.open_phase(session, run)
             phase_id = None if phase is None else phase.id
-            session.add_all(rows.to_row(entry, run, phase_id) for entry in details)
+            new = [rows.to_row(entry, run, phase_id) for entry in details]
+            written = rows.add_details(session, row, new, self._written.get(run))
+        self._written[run] = written
 
     def begin_phase(self, run: int, number: int, label: str) -> None:
         """End the phase that a run is in, if there is one, and begin another."""
         now = utc_now()
         with self._database.write() as session:
-            rows.open_run(session, run)
+            row = rows.open_run(session, run)
             before = rows.open_phase(session, run)
             if before is not None:
                 before.ended = now
-            session.add(schema.PhaseRow(run=run, number=number, label=label, began=now))
+            new = schema.PhaseRow(run=run, number=number, label=label, began=now)
+            written = rows.add_details(session, row, [new], self._written.get(run))
+        self._written[run] = written
 
     def add_artefact(self, run: int, name: str, data: bytes, media_type: str) -> str:
         """A file of the run; its SHA-256. The bytes are on the disk before the row is."""
         # In this order a power cut leaves a file without a row at worst, no row without its file.
         sha256 = self.artefacts.put(data)
         with self._database.write() as session:
-            rows.open_run(session, run)
-            session.add(rows.artefact(run, name, media_type, sha256, len(data)))
+            row = rows.open_run(session, run)
+            new = rows.artefact(run, name, media_type, sha256, len(data))
+            written = rows.add_details(session, row, [new], self._written.get(run))
+        self._written[run] = written
         return sha256
 
     def open_recording(self, run: int) -> BinaryIO:
@@ -149,9 +161,23 @@ class RunStore(StoredRecords):
         fault_number: int | None = None,
         fault: str | None = None,
     ) -> None:
-        """Close and seal; raises ``RunClosed`` the second time."""
+        """Close and seal; raises ``RunClosed`` the second time.
+
+        Raises ``RecordAltered`` after closing a run of which something was changed beside this
+        store while it was open; such a run is not good.
+        """
+        result, altered = RunResult(result), None
         with self._database.write() as session:
-            rows.close(session, rows.open_run(session, run), RunResult(result), fault_number, fault)
+            row = rows.open_run(session, run)
+            written = self._written.get(run)
+            if written is not None and rows.altered(session, row, written):
+                altered = RecordAltered(f"run {run}")
+                if result is RunResult.GOOD:
+                    result, fault_number, fault = RunResult.BAD, altered.number, str(altered)
+            rows.close(session, row, result, fault_number, fault)
+        self._written.pop(run, None)
+        if altered is not None:
+            raise altered
 
     def set_gauge(
         self, run: int, hole: str, diameter_mm: float, source: str, gauge_id: str = ""
@@ -234,4 +260,12 @@ class RunStore(StoredRecords):
     def ledger_head(self) -> LedgerHead:
         """Length and newest hash of the chain."""
         with self._database.read() as session:
+            return ledger.head(session)
+
+    def ledger_since(self, seen: LedgerHead | None) -> LedgerHead:
+        """As ``ledger_head``; raises ``RecordAltered`` unless the chain still holds an earlier
+        one."""
+        with self._database.read() as session:
+            if seen is not None and not ledger.holds(session, seen):
+                raise RecordAltered(f"the ledger no longer holds {seen}, to which it had come")
             return ledger.head(session)

@@ -10,7 +10,7 @@ from pathlib import Path
 from sqlalchemy import Connection, inspect, text
 
 from cellctl.errors.records import StoreContradictsVersion
-from cellctl.records.database.sealed import GAUGE, RUN
+from cellctl.records.database.sealed import GAUGE, KINDS, PROGRESS, RUN
 
 _CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {
     1: (("runs", "number"), ("ledger", "hash")),
@@ -21,8 +21,8 @@ _CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {
     3: (("ledger", "name"), ("gauges", "gauge_id"), ("ledger_head", "length")),
 }
 """Columns by the schema that brought them."""
-_FIRST_KINDS = frozenset({RUN, GAUGE})
-"""All that schema 1 and 2 have sealed."""
+_KINDS_BEFORE = {3: frozenset({RUN, GAUGE}), 4: KINDS.keys() - {PROGRESS}}
+"""All that earlier schemas than this one have sealed."""
 
 
 def require_claimed(connection: Connection, file: Path, version: int) -> None:
@@ -46,8 +46,6 @@ def _contradictions(connection: Connection, version: int) -> Iterator[str]:
         later = text("SELECT number FROM runs WHERE record_schema > :version ORDER BY number")
         for number in connection.execute(later, {"version": version}).scalars():
             yield f"run {number} of a later schema"
-    if version < 3:
-        kinds = connection.execute(text("SELECT DISTINCT kind FROM ledger ORDER BY kind")).scalars()
-        yield from (
-            f"ledger entries of the kind {kind}" for kind in kinds if kind not in _FIRST_KINDS
-        )
+    kinds = connection.execute(text("SELECT DISTINCT kind FROM ledger ORDER BY kind")).scalars()
+    known = next(known for schema, known in _KINDS_BEFORE.items() if version < schema)
+    yield from (f"ledger entries of the kind {kind}" for kind in kinds if kind not in known)

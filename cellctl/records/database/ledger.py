@@ -7,9 +7,10 @@ were cut off the end. The head, length and newest hash, lies in a table of its o
 
 What the store alone cannot show, because whoever may write to it can recompute every hash: a chain
 that was made anew from some entry on, and a tail that was cut off together with a head set back.
-Both show only against a head that lies elsewhere: every report prints it, and ``cellctl runs verify
---head`` holds the store against a printed one. Nor can it show what was done to a row before it was
-sealed: a run is sealed when it is closed, and what schema 1 and 2 did not seal, by the migration.
+Both show only against a head that lies elsewhere (docs/operating.md, "Whether records were
+touched"). Nor can it show what was done to a row before it was sealed: each is sealed in the
+transaction that writes it, but what schema 1 and 2 did not seal was sealed by the migration, and
+the end of a phase is sealed with its run.
 
 The content of a run depends on the schema that wrote it (``runs.record_schema``): an old run is
 sealed and verified over the tables of its own time, which a migration leaves as they are. That
@@ -25,12 +26,14 @@ from sqlalchemy.orm import Session
 
 from cellctl.records.database.canonical import digest
 from cellctl.records.database.schema import Base, LedgerHeadRow, LedgerRow
-from cellctl.records.database.sealed import KINDS, RUN
+from cellctl.records.database.sealed import KINDS, PROGRESS, RUN
+from cellctl.records.database.written_details import WrittenDetails
 from cellctl.records.seals import LedgerHead
 
 GENESIS = "0" * 64
 _HEAD = 1
 _UNREADABLE = "unreadable"
+_WORDS = {PROGRESS: "what was written of run"}
 Key = int | str
 
 
@@ -40,7 +43,21 @@ def seal(session: Session, kind: str, row: Base, time: datetime) -> None:
     _append(session, kind, getattr(row, KINDS[kind].key), time)
 
 
-def _append(session: Session, kind: str, subject: Key, time: datetime) -> None:
+def seal_written(session: Session, run: int, written: WrittenDetails, time: datetime) -> None:
+    """Append an entry for details that were written: their running hash, not what is there."""
+    _append(session, PROGRESS, run, time, digest(written.hashes))
+
+
+def is_as_sealed(session: Session, kind: str, subject: int) -> bool:
+    """Whether a row is as its newest entry has it."""
+    mine = LedgerRow.kind == kind, LedgerRow.subject == subject
+    query = select(LedgerRow.content).where(*mine).order_by(LedgerRow.number.desc()).limit(1)
+    return (session.scalars(query).first() or "") == _content(session, kind, subject)
+
+
+def _append(
+    session: Session, kind: str, subject: Key, time: datetime, content: str | None = None
+) -> None:
     last = session.scalars(select(LedgerRow).order_by(LedgerRow.number.desc()).limit(1)).first()
     number, name = (subject, None) if isinstance(subject, int) else (0, subject)
     row = LedgerRow(
@@ -48,7 +65,7 @@ def _append(session: Session, kind: str, subject: Key, time: datetime) -> None:
         kind=kind,
         subject=number,
         name=name,
-        content=_content(session, kind, subject),
+        content=_content(session, kind, subject) if content is None else content,
         previous=last.hash if last else GENESIS,
     )
     row.hash = _entry_hash(row)
@@ -62,6 +79,12 @@ def head(session: Session) -> LedgerHead:
     """Length and newest hash as they were written down last."""
     row = session.get(LedgerHeadRow, _HEAD)
     return LedgerHead(0, GENESIS) if row is None else LedgerHead(row.length, row.hash)
+
+
+def holds(session: Session, head: LedgerHead) -> bool:
+    """Whether the chain has, or goes on from, a head that it had at some time."""
+    row = session.get(LedgerRow, head.length)
+    return head == LedgerHead(0, GENESIS) or (row is not None and row.hash == head.hash)
 
 
 def seal_unsealed(session: Session, time: datetime, kinds: Iterable[str]) -> None:
@@ -79,13 +102,18 @@ def seal_unsealed(session: Session, time: datetime, kinds: Iterable[str]) -> Non
 
 
 def problems(
-    session: Session, printed: LedgerHead | None = None, *, more_to_come: bool = False
+    session: Session,
+    printed: LedgerHead | None = None,
+    *,
+    is_copy: bool = False,
+    more_to_come: bool = False,
 ) -> Iterator[str]:
     """Every place where the chain does not fit; empty when all is as it was sealed.
 
     ``printed`` is a head that was printed on a report: the chain must still contain it.
-    ``more_to_come``: this is a copy to which later entries are still to be brought, so that a value
-    may be newer or older than the last entry that is here.
+    ``is_copy``: this is a copy, to which the details of a run are brought when it is closed.
+    ``more_to_come``: later entries are still to be brought to it, so that a value may be newer or
+    older than the last entry that is here.
     """
     rows = session.scalars(select(LedgerRow).order_by(LedgerRow.number)).all()
     yield from _chain(rows)
@@ -94,18 +122,20 @@ def problems(
         subject, kind = _subject(row), KINDS.get(row.kind)
         if kind is None:
             yield f"{_entry(row)} is of an unknown kind"
-        # The value that this entry sealed exists no longer; only the newest one can be compared.
-        elif kind.superseded and (more_to_come or newest[row.kind, subject] != row.number):
             continue
-        elif row.content != _content(session, row.kind, subject):
-            yield f"{row.kind} {subject} was changed after it was sealed"
+        # The value that this entry sealed exists no longer; only the newest one can be compared.
+        if kind.superseded and (more_to_come or newest[row.kind, subject] != row.number):
+            continue
+        is_open = is_copy and row.kind == PROGRESS and not _content(session, RUN, subject)
+        if not is_open and row.content != _content(session, row.kind, subject):
+            yield f"{_WORDS.get(row.kind, row.kind)} {subject} was changed after it was sealed"
     for name in KINDS:
         for key in _keys(session, name):
             # Also in the other direction: a row that somebody has added with SQL is in no entry of
             # the chain.
             if (name, key) not in newest:
                 what = "closed but " if name == RUN else ""
-                yield f"{name} {key} is {what}not sealed"
+                yield f"{_WORDS.get(name, name)} {key} is {what}not sealed"
     hashes = {row.number: row.hash for row in rows}
     yield from _against(head(session), hashes, "the ledger's head")
     if printed is not None:

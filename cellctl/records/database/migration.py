@@ -18,7 +18,7 @@ from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
 from cellctl.records.database.claimed_version import require_claimed
 from cellctl.records.database.ledger import seal_unsealed
-from cellctl.records.database.schema import Base
+from cellctl.records.database.schema import Base, DocumentRow, LedgerRow
 from cellctl.records.database.schema_1.tables import PROCESS
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 from cellctl.records.database.sealed import SEALED_FROM_3_ON
@@ -106,5 +106,13 @@ def _from_2_to_3(connection: Connection) -> None:
         session.flush()
 
 
-_STEPS: tuple[Callable[[Connection], None], ...] = (_from_1_to_2, _from_2_to_3)
+def _from_3_to_4(connection: Connection) -> None:
+    """The details of a run are sealed as they are written, which needs no column: runs of earlier
+    versions stay sealed as they are. An index finds the entries of a run among so many more."""
+    for table in (LedgerRow, DocumentRow):
+        for index in table.__table__.indexes:  # type: ignore[attr-defined]  # a Table
+            index.create(connection, checkfirst=True)
+
+
+_STEPS: tuple[Callable[[Connection], None], ...] = (_from_1_to_2, _from_2_to_3, _from_3_to_4)
 """The first leads from schema 1 to 2."""

@@ -9,7 +9,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import BigInteger, Enum, ForeignKey, Integer, String
+from sqlalchemy import BigInteger, Enum, ForeignKey, Index, Integer, String
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from cellctl.records.database.column_types import PassComponents, PlainJson, Utc
@@ -144,7 +144,7 @@ class DocumentRow(DetailOfRun, Base):
     """What a process knows of a run besides figures and poses, as plain data."""
 
     __tablename__ = "documents"
-    key: Mapped[str]
+    key: Mapped[str] = mapped_column(index=True)
     content: Mapped[Mapping[str, Any]]
 
 
@@ -203,6 +203,7 @@ class LedgerRow(Base):
     """The hash chain over what may no longer change."""
 
     __tablename__ = "ledger"
+    __table_args__ = (Index("ix_ledger_kind_subject", "kind", "subject"),)
     number: Mapped[int] = mapped_column(primary_key=True)
     time: Mapped[datetime]
     kind: Mapped[str]

@@ -11,27 +11,20 @@ from cellctl.records.database import schema_1
 from cellctl.records.database.canonical import columns
 from cellctl.records.database.schema import (
     AlarmRow,
-    ArtefactRow,
     AuditRow,
     Base,
     CalibrationRow,
-    DocumentRow,
-    FigureRow,
     GaugeRow,
-    PassRow,
-    PhaseRow,
-    PoseRow,
     RunRow,
     ValueRow,
 )
+from cellctl.records.database.written_details import DETAILS, WrittenDetails
 
-RUN, GAUGE = "run", "gauge"
+RUN, GAUGE, PROGRESS = "run", "gauge", "progress"
 OPENING, AUDIT, VALUE = "opening", "audit", "value"
 ALARM, ACKNOWLEDGEMENT = "alarm", "acknowledgement"
 CALIBRATION, INVALIDATION = "calibration", "invalidation"
 
-DETAILS = (PhaseRow, FigureRow, PoseRow, PassRow, DocumentRow, ArtefactRow)
-"""Tables of the details of a run; a table stands after those that it refers to."""
 FILLED: Mapping[str, frozenset[str]] = {
     RUN: frozenset({"ended", "result", "fault_number", "fault"}),
     ACKNOWLEDGEMENT: frozenset({"acknowledged", "acknowledged_by"}),
@@ -83,6 +76,13 @@ def _opening(_session: Session, row: RunRow) -> Content | None:
     return None if row.record_schema < 3 else _without(row, FILLED[RUN])
 
 
+def _progress(session: Session, row: RunRow) -> Content | None:
+    """The details, also of an open run; earlier versions sealed them at its closing only."""
+    return (
+        None if row.record_schema < 4 else WrittenDetails.read(session, row.number).hashes or None
+    )
+
+
 def _gauge(_session: Session, row: GaugeRow) -> Content:
     """The gauge's own id came with schema 3: without one the content is that of before."""
     content = columns(row)
@@ -110,6 +110,7 @@ def _if_any(row: AlarmRow | CalibrationRow, names: frozenset[str]) -> Content | 
 
 KINDS: Mapping[str, SealedKind] = {
     OPENING: SealedKind(RunRow, "number", _opening),
+    PROGRESS: SealedKind(RunRow, "number", _progress, superseded=True),
     RUN: SealedKind(RunRow, "number", _run),
     GAUGE: SealedKind(GaugeRow, "id", _gauge),
     ALARM: SealedKind(AlarmRow, "id", lambda _, row: _without(row, FILLED[ACKNOWLEDGEMENT])),

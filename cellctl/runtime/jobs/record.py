@@ -90,7 +90,9 @@ class JobRecord:
             fault_number=fault.number if fault else None,
             fault=str(fault) if fault else None,
         )
-        _log.info("run closed", run=self.number, result=outcome.value)
+        # The journal is another place than the store: it shows a run that was cut off the ledger.
+        head = await self.store.do(RunStore.ledger_head)
+        _log.info("run closed", run=self.number, result=outcome.value, ledger_head=str(head))
 
     async def _keep_motion(self, motion: MotionRecorder) -> None:
         try:

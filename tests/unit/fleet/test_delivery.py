@@ -20,6 +20,7 @@ from cellctl.errors.records import (
 )
 from cellctl.fleet import recall
 from cellctl.records import RunResult, RunStore
+from cellctl.records.database.schema_version import SCHEMA_VERSION
 from cellctl.records.run_filter import RunFilter
 from tests.unit.fleet.conftest import NORTH, SOUTH, Fleet, deliver_all
 from tests.unit.records.conftest import start
@@ -204,7 +205,7 @@ def test_older_tables_are_waited_for(fleet: Fleet) -> None:
     delivery = fleet.delivery(NORTH)
     with pytest.raises(FleetOutdated):
         delivery.deliver()
-    fleet.execute("UPDATE fleet.cells SET record_schema = 3")
+    fleet.execute(f"UPDATE fleet.cells SET record_schema = {SCHEMA_VERSION}")
     deliver_all(delivery)
 
 

@@ -89,6 +89,7 @@ def of_today(tmp_path: Path) -> Path:
     store = RunStore(tmp_path / "today")
     run = start(store)
     store.add_alarm(run, 202, "F202")
+    store.begin_phase(run, 10, "measure frame")
     store.close_run(run, RunResult.GOOD)
     store.close()
     return store.path
@@ -135,3 +136,12 @@ def test_a_gauge_that_was_forged_into_an_old_store_gets_no_seal(old: Path) -> No
     store = RunStore(old)
     assert store.verify() == ["gauge 99 is not sealed"]
     store.close()
+
+
+def test_a_store_of_today_that_claims_schema_3_is_refused(of_today: Path) -> None:
+    execute(of_today, "PRAGMA user_version = 3")
+    with pytest.raises(StoreContradictsVersion, match="run 1 of a later schema"):
+        RunStore(of_today)
+    execute(of_today, "UPDATE runs SET record_schema = 3")
+    with pytest.raises(StoreContradictsVersion, match="ledger entries of the kind progress"):
+        RunStore(of_today)
