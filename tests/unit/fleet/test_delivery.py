@@ -21,6 +21,7 @@ from cellctl.errors.records import (
 from cellctl.fleet import recall
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.schema_version import SCHEMA_VERSION
+from cellctl.records.figures import figure
 from cellctl.records.run_filter import RunFilter
 from tests.unit.fleet.conftest import NORTH, SOUTH, Fleet, deliver_all
 from tests.unit.records.conftest import start
@@ -197,6 +198,20 @@ def test_an_unknown_cell_is_refused_until_it_is_added(fleet: Fleet) -> None:
         delivery.deliver()
     fleet.execute(f"UPDATE fleet.cells SET name = '{NORTH}' WHERE name = 'another'")
     deliver_all(delivery)
+
+
+def test_an_open_run_is_no_problem_of_the_copy_and_no_change_of_its_row(fleet: Fleet) -> None:
+    store = fleet.store(NORTH)
+    run = start(store)
+    store.begin_phase(run, 10, "measure frame")
+    store.add(run, figure("force", 36.0, "N"))
+    delivery = fleet.delivery(NORTH)
+    deliver_all(delivery)
+    assert recall.problems(fleet.owner, NORTH, store.ledger_head()) == []
+    store.add(run, figure("offset", 0.1, "mm"))
+    store.close_run(run, RunResult.GOOD)
+    deliver_all(delivery)
+    assert_whole(fleet, NORTH, store)
 
 
 def test_older_tables_are_waited_for(fleet: Fleet) -> None:
