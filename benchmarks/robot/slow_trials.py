@@ -22,7 +22,7 @@ STATEMENTS_A_ROUND = 110
 """Statements in a round of a background job, roughly: a cause comes at any of them."""
 ROUNDS_A_MOTION = 6
 ENDLESS_S = 60.0
-LIMITS = {
+LIMITS: dict[str, Any] = {
     "stale_s": ENDLESS_S, "silence_s": ENDLESS_S, "reply_timeout_s": ENDLESS_S,
     "stop_timeout_s": ENDLESS_S, "connect_timeout_s": ENDLESS_S,
 }  # fmt: skip

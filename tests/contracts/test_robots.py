@@ -12,6 +12,7 @@ from cellctl.cell.zones.zone import Share, Zone
 from cellctl.cell.zones.zoned_robot import ZonedRobot
 from cellctl.clock import now_s
 from cellctl.geometry.box import Box
+from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, StreamingRobot
 from drivers.robot.siasun.driver import SiasunRobot
 from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
@@ -20,10 +21,12 @@ from tests.contracts.suites.robot import RobotBench, RobotContract
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
 from tests.rigs.wire.job_rig import JobRig, job_rig
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
+from tests.rigs.wire.standing_arm import READY_DEG
 
 
 class InProcessBench(RobotBench):
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
+    outside_joints_rad = np.array([0.0, 0.0, 3.2, 0.0, 0.0, 0.0])
     max_speed_m_s = MAX_SPEED_M_S
 
     def __init__(self, memory: InProcessRobot, robot: Robot | None = None) -> None:
@@ -36,6 +39,12 @@ class InProcessBench(RobotBench):
 
     def flange(self) -> RigidTransform:
         return self.memory.flange
+
+    def joints_rad(self) -> Array:
+        return self.memory.joints_rad
+
+    def press_emergency_stop(self) -> None:
+        self.memory.emergency_stop = True
 
     def moving(self) -> bool:
         return self.memory.moving
@@ -50,6 +59,7 @@ class InProcessBench(RobotBench):
 class SiasunBench(RobotBench):
     robot: SiasunRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
+    outside_joints_rad = np.radians([*READY_DEG[:5], 361.0])
 
     def __init__(self, rig: Rig | JobRig) -> None:
         self.rig = rig
@@ -72,6 +82,12 @@ class SiasunBench(RobotBench):
 
     def flange(self) -> RigidTransform:
         return self.rig.arm.encoder_pose(self.rig.controller._clock())
+
+    def joints_rad(self) -> Array:
+        return self.rig.arm.joints(self.rig.controller._clock())
+
+    def press_emergency_stop(self) -> None:
+        self.rig.controller.faults.inject("emergency_stop")
 
     def moving(self) -> bool:
         return self.rig.controller.moving()

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.geometry.pose import Array
 from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun_rpc.driver import SiasunRpcRobot
 from drivers.robot.siasun_rpc.stop_channel import SiasunRpcStopChannel
@@ -15,12 +16,13 @@ from tests.contracts.suites.robot import RobotBench, RobotContract
 from tests.contracts.suites.stop_channel import StopBench, StopChannelContract
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
 from tests.rigs.wire.duco_rig import DucoRig, duco_rig
-from tests.rigs.wire.standing_arm import READY_DEG
+from tests.rigs.wire.standing_arm import READY_DEG, TURNED_DEG
 
 
 class RpcBench(RobotBench):
     robot: SiasunRpcRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
+    outside_joints_rad = np.radians([*READY_DEG[:5], 361.0])
 
     def __init__(self, rig: DucoRig) -> None:
         self.rig = rig
@@ -32,6 +34,12 @@ class RpcBench(RobotBench):
 
     def flange(self) -> RigidTransform:
         return self.rig.arm.encoder_pose(self.rig.logic.clock())
+
+    def joints_rad(self) -> Array:
+        return self.rig.arm.joints(self.rig.logic.clock())
+
+    def press_emergency_stop(self) -> None:
+        self.rig.logic.faults.inject("emergency_stop")
 
     def moving(self) -> bool:
         return self.rig.logic.moving()
@@ -89,11 +97,14 @@ class RpcStopBench(StopBench):
         self.channel: StopChannel = SiasunRpcStopChannel(rig.guard)
 
     def start_motion(self) -> None:
-        target_rad = np.radians([30.0, *READY_DEG[1:]]).tolist()
+        target_rad = np.radians([30.0, *TURNED_DEG[1:]]).tolist()
         self._thread.call(lambda: self._rig.logic.move_joint(target_rad, 10.0))
 
     def moving(self) -> bool:
         return self._thread.call(self._rig.logic.moving)
+
+    def flange(self) -> RigidTransform:
+        return self._thread.call(lambda: self._rig.arm.encoder_pose(self._rig.logic.clock()))
 
     def cut(self) -> None:
         self._thread.call(self._rig.reset)
@@ -106,7 +117,7 @@ class TestSiasunRpcStopChannel(StopChannelContract):
     def bench(self) -> Iterator[StopBench]:
         with LoopThread() as thread:
             stack = AsyncExitStack()
-            rig = thread.run(stack.enter_async_context(duco_rig()))
+            rig = thread.run(stack.enter_async_context(duco_rig(TURNED_DEG)))
             bench = RpcStopBench(thread, rig)
             yield bench
             bench.channel.close()

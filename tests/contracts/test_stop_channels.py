@@ -5,15 +5,16 @@ from contextlib import AsyncExitStack
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.interfaces.stop_channel import StopChannel
 from drivers.robot.siasun.stop_channel import SiasunStopChannel
-from tests.contracts.inprocess.stop_channel import InProcessStopChannel
+from tests.contracts.inprocess.stop_channel import FLANGE, InProcessStopChannel
 from tests.contracts.loop_thread import LoopThread
 from tests.contracts.suites.stop_channel import StopBench, StopChannelContract
 from tests.rigs.wire.job_rig import JobRig, job_rig
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.rigs.wire.standing_arm import READY_DEG
+from tests.rigs.wire.standing_arm import TURNED_DEG
 
 
 class InProcessBench(StopBench):
@@ -26,6 +27,9 @@ class InProcessBench(StopBench):
 
     def moving(self) -> bool:
         return self.memory.moving()
+
+    def flange(self) -> RigidTransform:
+        return FLANGE
 
     def cut(self) -> None:
         self.memory.lost = True
@@ -40,13 +44,16 @@ class SiasunBench(StopBench):
 
     def start_motion(self) -> None:
         def begin() -> None:
-            target = np.radians([30.0, *READY_DEG[1:]])
+            target = np.radians([30.0, *TURNED_DEG[1:]])
             self._rig.arm.start_joint(self._rig.controller._clock(), target, 10.0)
 
         self._thread.call(self._rig.turn if isinstance(self._rig, JobRig) else begin)
 
     def moving(self) -> bool:
         return self._thread.call(lambda: self._rig.arm.moving(self._rig.controller._clock()))
+
+    def flange(self) -> RigidTransform:
+        return self._thread.call(lambda: self._rig.arm.encoder_pose(self._rig.controller._clock()))
 
     def cut(self) -> None:
         self._thread.call(self._rig.wires["GRD"].reset)
@@ -67,7 +74,9 @@ class TestSiasunStopChannel(StopChannelContract):
     def bench(self) -> Iterator[StopBench]:
         with LoopThread() as thread:
             stack = AsyncExitStack()
-            rig = thread.run(stack.enter_async_context(sjl_rig(channels=("GRD",))))
+            rig = thread.run(
+                stack.enter_async_context(sjl_rig(channels=("GRD",), stands_deg=TURNED_DEG))
+            )
             bench = SiasunBench(thread, rig)
             yield bench
             bench.channel.close()
@@ -83,7 +92,9 @@ class TestSiasunStopChannelOnItsJobs(StopChannelContract):
     def bench(self) -> Iterator[StopBench]:
         with LoopThread() as thread:
             stack = AsyncExitStack()
-            rig = thread.run(stack.enter_async_context(job_rig(channels=("GRD",))))
+            rig = thread.run(
+                stack.enter_async_context(job_rig(channels=("GRD",), stands_deg=TURNED_DEG))
+            )
             bench = SiasunBench(thread, rig)
             yield bench
             bench.channel.close()

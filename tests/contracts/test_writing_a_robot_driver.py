@@ -4,6 +4,8 @@ this repository's own tests pass beside it.
 
 from pathlib import Path
 
+import pytest
+
 from tests.guides.package import (
     ROOT,
     contract_of,
@@ -27,25 +29,73 @@ def test_the_folder_is_complete(written: Path) -> None:
 def test_both_contracts_hold(written: Path, installed: Path) -> None:
     done = contract_of(written, installed)
     assert done.returncode == 0, done.stdout + done.stderr
-    assert "23 passed" in done.stdout
+    assert "28 passed" in done.stdout
+
+
+def changed(path: Path, *changes: tuple[str, str]) -> None:
+    """Replace texts of a file that the guide has."""
+    text = path.read_text(encoding="utf-8")
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text, encoding="utf-8")
+
+
+def assert_refused(folder: Path, *clauses: str) -> None:
+    done = contract_of(folder, folder)
+    assert done.returncode == 1
+    for clause in clauses:
+        assert f"::{clause}" in done.stdout, done.stdout
 
 
 def test_a_driver_that_forgets_a_duty_does_not_pass(tmp_path: Path) -> None:
-    """The contract finds what the page warns of: a bound and a stop that are missing."""
+    """The contract finds what the page warns of: a bound and a stop that are missing, and the
+    matrix of the guard's port read by columns."""
     write_files(GUIDE, tmp_path)
-    driver = tmp_path / "beta_r6" / "driver.py"
-    text = driver.read_text(encoding="utf-8")
-    for duty in (
-        "        self._bounds.step(self.state(), base_T_flange)\n",
-        "            await self.stop()\n            raise\n",
-    ):
-        assert duty in text
-        text = text.replace(duty, "            raise\n" if "raise" in duty else "")
-    driver.write_text(text, encoding="utf-8")
-    done = contract_of(tmp_path, tmp_path)
-    assert done.returncode == 1
-    for clause in ("test_targets_are_bounded", "test_cancellation_stops_first"):
-        assert f"::{clause}" in done.stdout, done.stdout
+    bound = "        self._bounds.step(self.state(), base_T_flange)\n"
+    stop = "            await self.stop()\n            raise\n"
+    changed(tmp_path / "beta_r6" / "driver.py", (bound, ""), (stop, "            raise\n"))
+    by_columns = ("        tuple(rotation),\n", "        tuple(matrix.T.ravel().tolist()),\n")
+    changed(tmp_path / "beta_r6" / "protocol.py", by_columns)
+    assert_refused(
+        tmp_path,
+        "test_targets_are_bounded",
+        "test_cancellation_stops_first",
+        "test_reports_are_fresh_and_well_formed",
+    )
+
+
+WAITS = "        await self._link.until(lambda seen: not seen.state.moving)\n"
+POSE = "base_T_flange=pose_from_xyzabc(numbers[:6])"
+SENT = "*pose_to_xyzabc(pose)"
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("file", "changes", "clause"),
+    [
+        ("driver.py", [(WAITS, "")], "test_link_loss_fails_at_once_and_never_resumes"),
+        ("driver.py", [(WAITS, "        self._latched = False\n")], "test_link_loss_fails"),
+        (
+            "protocol.py",
+            [(POSE, "base_T_flange=pose_from_xyzabc([*numbers[:3], *numbers[5:2:-1]])")],
+            "test_state_is_fresh_and_right",
+        ),
+        (
+            "protocol.py",
+            [(SENT, "*pose_to_xyzabc(pose)[:3], *pose_to_xyzabc(pose)[5:2:-1]")],
+            "test_turns_and_joints_arrive_as_they_were_meant",
+        ),
+        ("protocol.py", [("*np.degrees(joints_rad)", "*joints_rad")], "test_turns_and_joints"),
+    ],
+    ids=["rearmed too early", "rearmed at once", "angles read", "angles sent", "radians"],
+)
+def test_a_driver_with_an_error_that_authors_make_does_not_pass(
+    tmp_path: Path, file: str, changes: list[tuple[str, str]], clause: str
+) -> None:
+    write_files(GUIDE, tmp_path)
+    changed(tmp_path / "beta_r6" / file, *changes)
+    assert_refused(tmp_path, clause)
 
 
 def test_our_own_tests_pass_beside_it(installed: Path) -> None:

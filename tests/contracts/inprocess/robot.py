@@ -8,7 +8,13 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkLost, StaleData
-from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, TargetOutOfBounds
+from cellctl.errors.robot import (
+    MotionAborted,
+    MotionRejected,
+    NotRearmed,
+    RobotNotReady,
+    TargetOutOfBounds,
+)
 from cellctl.geometry.pose import Array
 from cellctl.interfaces.robot import Robot, RobotMode, RobotState
 
@@ -17,6 +23,9 @@ MAX_SPEED_M_S = 0.2
 MAX_STEP_M = 0.0005
 REACH_M = 2.0
 _TICK_S = 0.005
+MAX_STEP_RAD = 0.02
+_STANDS_AFTER_S = 0.04
+"""So long after a stop it still counts as moving, as an arm with mass does."""
 
 
 class InProcessRobot(Robot):
@@ -28,21 +37,24 @@ class InProcessRobot(Robot):
         self.joints_rad: Array = np.zeros(6)
         self.commands = 0
         self.frozen_at_s: float | None = None
+        self.emergency_stop = False
         self._connected = False
         self._latched = False
+        self._stands_from_s = 0.0
         self._motion: asyncio.Task[None] | None = None
         self._end: CellError | None = None
 
     @property
     def moving(self) -> bool:
-        """A motion runs."""
-        return self._motion is not None
+        """A motion runs, or ends."""
+        return self._motion is not None or now_s() < self._stands_from_s
 
     async def connect(self) -> None:
         self._connected = True
 
     async def disconnect(self) -> None:
         self._halt(LinkLost("disconnected"))
+        await self._standstill()
         self._connected = False
 
     def cut(self) -> None:
@@ -60,7 +72,7 @@ class InProcessRobot(Robot):
             base_T_flange=self.flange,
             joints_rad=self.joints_rad,
             mode=RobotMode.REMOTE,
-            emergency_stop=False,
+            emergency_stop=self.emergency_stop,
             drives_on=True,
             moving=self.moving,
             stop_latched=self._latched,
@@ -85,7 +97,8 @@ class InProcessRobot(Robot):
         return await self._move(base_T_flange, self.joints_rad, duration_s)
 
     async def step(self, base_T_flange: RigidTransform, *, speed_m_s: float) -> RobotState:
-        if self.state().distance_to(base_T_flange)[0] > MAX_STEP_M:
+        way_m, turn_rad = self.state().distance_to(base_T_flange)
+        if not (way_m <= MAX_STEP_M and turn_rad <= MAX_STEP_RAD):
             raise TargetOutOfBounds("step")
         return await self.move_linear(base_T_flange, speed_m_s=speed_m_s, acceleration_m_s2=1.0)
 
@@ -93,9 +106,11 @@ class InProcessRobot(Robot):
         self.state()
         self._halt(MotionAborted("stop"))
         self._latched = True
+        await self._standstill()
 
     async def rearm(self) -> None:
         self.state()
+        await self._standstill()
         self._latched = False
 
     def _halt(self, reason: CellError) -> None:
@@ -103,6 +118,11 @@ class InProcessRobot(Robot):
             self._latched, self._end = True, reason
             self._motion.cancel()
             self._motion = None
+            self._stands_from_s = now_s() + _STANDS_AFTER_S
+
+    async def _standstill(self) -> None:
+        while self.moving:  # noqa: ASYNC110  no event for it
+            await asyncio.sleep(_TICK_S)
 
     async def _move(self, flange: RigidTransform, joints_rad: Array, time_s: float) -> RobotState:
         self.state()
@@ -110,6 +130,8 @@ class InProcessRobot(Robot):
             raise MotionRejected("busy")
         if self._latched:
             raise NotRearmed("latched")
+        if self.emergency_stop:
+            raise RobotNotReady("emergency stop")
         self.commands += 1
         self._end = None
         motion = self._motion = asyncio.create_task(self._run(flange, joints_rad, time_s))

@@ -4,10 +4,12 @@ import socket
 
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkLost
+from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 
 DEADMAN_S = 0.3
 REPORT_S = 0.02
+FLANGE = pose_from_xyzabc((1500.0, 0.0, 1000.0, 20.0, -10.0, 170.0))
 
 
 class InProcessStopChannel(StopChannel):
@@ -57,8 +59,9 @@ class InProcessStopChannel(StopChannel):
         if now_s() - self._report_s < REPORT_S:
             return None
         self._report_s = now_s()
-        rotation = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
-        return FlangeState(now_s(), (1.5, 0.0, 1.0), rotation, self.moving(), self.latched)
+        x_m, y_m, z_m = FLANGE.translation.tolist()
+        rotation = tuple(FLANGE.rotation.as_matrix().ravel().tolist())
+        return FlangeState(now_s(), (x_m, y_m, z_m), rotation, self.moving(), self.latched)
 
     def _stop(self) -> None:
         self.latched = self.latched or self._running

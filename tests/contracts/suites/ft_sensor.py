@@ -106,12 +106,20 @@ class FtSensorContract(ABC):
             assert values(sample) == pytest.approx(opened.wrench, rel=1e-5, abs=1e-6)
             assert not sample.saturated
             assert sample.receive_time_s <= now_s()
+            assert abs(sample.time_s - sample.receive_time_s) < 0.25
         assert now_s() - samples[-1].receive_time_s < 0.25
         times = [sample.time_s for sample in samples]
         assert times == sorted(times)
         span_s = times[-1] - times[20]
         assert span_s == pytest.approx((len(times) - 21) / opened.rate_hz, rel=0.25)
         assert opened.sensor.health().samples >= 100
+
+    def test_the_rate_is_measured(self, opened: FtBench) -> None:
+        def measured(_: list[WrenchSample]) -> bool:
+            rate_hz = opened.sensor.health().rate_hz
+            return rate_hz == pytest.approx(opened.rate_hz, rel=0.25)
+
+        watch(opened.sensor, measured, limit_s=5.0)
 
     def test_descriptor_tells_of_samples(self, opened: FtBench) -> None:
         collect(opened.sensor, 1)
@@ -128,6 +136,11 @@ class FtSensorContract(ABC):
         while opened.sensor.read(0.1):
             assert time.monotonic() - start_s < 1.0
         assert time.monotonic() - start_s < 1.5
+        # The guard asks for stops between two readings: one that is late by as much as it likes
+        # would keep it from them.
+        start_s = time.monotonic()
+        assert not opened.sensor.read(0.05)
+        assert time.monotonic() - start_s < 0.25
 
     def test_lost_samples_are_counted(self, opened: FtBench) -> None:
         opened.lose()

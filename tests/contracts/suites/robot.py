@@ -7,12 +7,19 @@ from typing import TypeVar
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, StaleData
-from cellctl.errors.robot import MotionAborted, MotionRejected, NotRearmed, TargetOutOfBounds
+from cellctl.errors.robot import (
+    MotionAborted,
+    MotionRejected,
+    NotRearmed,
+    RobotNotReady,
+    TargetOutOfBounds,
+)
+from cellctl.geometry.pose import Array
 from cellctl.interfaces.robot import Robot, RobotState
 
 Value = TypeVar("Value")
@@ -25,6 +32,8 @@ class RobotBench(ABC):
     robot: Robot
     outside: RigidTransform
     """A pose beyond the bounds."""
+    outside_joints_rad: Array
+    """Joints beyond the bounds, shape (6,)."""
     max_speed_m_s: float
 
     async def connect(self) -> None:
@@ -40,8 +49,17 @@ class RobotBench(ABC):
         """Where the flange is, whatever the driver says."""
 
     @abstractmethod
+    def joints_rad(self) -> Array:
+        """Where the joints are, whatever the driver says; shape (6,)."""
+
+    @abstractmethod
     def moving(self) -> bool:
-        """Whether the arm moves, whatever the driver says."""
+        """Whether the arm moves, whatever the driver says. It has mass: after a stop it moves on
+        for a while."""
+
+    @abstractmethod
+    def press_emergency_stop(self) -> None:
+        """Press it, until the test ends."""
 
     @abstractmethod
     def freeze(self) -> None:
@@ -133,8 +151,16 @@ class RobotContract(ABC):
         state = connected.robot.state()
         assert 0.0 <= now_s() - state.time_s < 0.25
         assert state.joints_rad.shape == (6,)
-        assert state.distance_to(connected.flange())[0] < 1e-6
+        self.says_where_it_is(connected)
         assert state.ready
+
+    @staticmethod
+    def says_where_it_is(bench: RobotBench) -> None:
+        state = bench.robot.state()
+        distance_m, angle_rad = state.distance_to(bench.flange())
+        assert distance_m < 1e-5
+        assert angle_rad < 1e-4
+        assert np.allclose(state.joints_rad, bench.joints_rad(), atol=1e-4)
 
     async def test_stale_state_raises_and_nothing_starts(self, connected: RobotBench) -> None:
         target = self.target(connected, 2.0)
@@ -163,6 +189,33 @@ class RobotContract(ABC):
         assert np.allclose(state.joints_rad, joints_rad, atol=1e-6)
         assert connected.commands() == 3
 
+    async def test_turns_and_joints_arrive_as_they_were_meant(self, connected: RobotBench) -> None:
+        """A wrong order of angles, degrees for radians, or joints in another order show here: no
+        two figures are alike, and the bench says where the arm is."""
+        robot, here = connected.robot, self.target(connected, 3.0)
+        turn = Rotation.from_euler("ZYX", [9.0, -6.0, 4.0], degrees=True)
+        tilted = here * RigidTransform.from_rotation(turn)
+        await within(5.0, robot.move_linear(tilted, speed_m_s=0.05, acceleration_m_s2=1.0))
+        off = tilted.inv() * connected.flange()
+        assert np.linalg.norm(off.translation) < 1e-5
+        assert off.rotation.magnitude() < 1e-4
+        self.says_where_it_is(connected)
+        turned_rad = np.array([0.010, -0.008, 0.006, -0.012, 0.014, -0.016])
+        joints_rad = robot.state().joints_rad + turned_rad
+        await within(3.0, robot.move_joint(joints_rad, speed_ratio=0.5))
+        assert np.allclose(connected.joints_rad(), joints_rad, atol=1e-4)
+        self.says_where_it_is(connected)
+
+    async def test_an_arm_that_is_not_ready_is_not_moved(self, connected: RobotBench) -> None:
+        robot, here = connected.robot, self.target(connected, 2.0)
+        connected.press_emergency_stop()
+        async with asyncio.timeout(2.0):
+            while robot.state().ready:  # noqa: ASYNC110  no event for it
+                await asyncio.sleep(0.01)
+        with pytest.raises((RobotNotReady, NotRearmed)):
+            await robot.move_linear(here, speed_m_s=0.05, acceleration_m_s2=1.0)
+        assert connected.commands() == 0
+
     async def test_one_motion_at_a_time(self, connected: RobotBench) -> None:
         move = await self.begin(connected)
         with pytest.raises(MotionRejected):
@@ -172,6 +225,7 @@ class RobotContract(ABC):
     async def test_targets_are_bounded(self, connected: RobotBench) -> None:
         robot, here = connected.robot, self.target(connected, 0.0)
         fast = connected.max_speed_m_s * 1.01
+        turn = RigidTransform.from_rotation(Rotation.from_euler("z", 20.0, degrees=True))
         refused = [
             robot.move_linear(connected.outside, speed_m_s=0.05, acceleration_m_s2=1.0),
             robot.move_linear(here, speed_m_s=fast, acceleration_m_s2=1.0),
@@ -179,8 +233,10 @@ class RobotContract(ABC):
             robot.move_linear(here, speed_m_s=float("nan"), acceleration_m_s2=1.0),
             robot.move_joint(np.full(6, np.nan), speed_ratio=0.1),
             robot.move_joint(np.zeros(6), speed_ratio=1.01),
+            robot.move_joint(connected.outside_joints_rad, speed_ratio=0.1),
             robot.step(connected.outside, speed_m_s=0.01),
             robot.step(self.target(connected, 50.0), speed_m_s=0.01),
+            robot.step(here * turn, speed_m_s=0.01),
         ]
         for move in refused:
             with pytest.raises(TargetOutOfBounds):
@@ -220,6 +276,37 @@ class RobotContract(ABC):
         assert not connected.moving()
         with pytest.raises(MotionAborted):
             await within(1.0, move)
+
+    async def test_the_arm_of_the_bench_has_mass(self, connected: RobotBench) -> None:
+        """Of the bench, not of the driver: an arm that stands at once shows no driver that does
+        not wait for standstill."""
+        await self.begin(connected)
+        stop, begin_s = asyncio.create_task(connected.robot.stop()), now_s()
+        while connected.moving():
+            assert now_s() - begin_s < 2.0
+            await asyncio.sleep(0.002)
+        assert now_s() - begin_s > 0.03
+        await within(2.0, stop)
+
+    async def test_a_stop_leaves_the_event_loop_free(self, connected: RobotBench) -> None:
+        """Heartbeats of all arms and the answers to the line come from the same loop."""
+        await self.begin(connected)
+        stop, gaps_s, last_s = asyncio.create_task(connected.robot.stop()), [0.0], now_s()
+        while not stop.done():
+            await asyncio.sleep(0.005)
+            gaps_s.append(now_s() - last_s)
+            last_s = now_s()
+        await stop
+        assert max(gaps_s) < 0.2
+
+    async def test_connecting_releases_no_latch(self, connected: RobotBench) -> None:
+        await within(2.0, connected.robot.stop())
+        await connected.robot.disconnect()
+        await within(5.0, connected.robot.connect())
+        assert connected.robot.state().stop_latched
+        with pytest.raises(NotRearmed):
+            await self.move(connected, 2.0)
+        assert connected.commands() == 0
 
     async def test_cancellation_stops_first(self, connected: RobotBench) -> None:
         move = await self.begin(connected)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError
@@ -25,6 +26,11 @@ class StopBench(ABC):
     @abstractmethod
     def moving(self) -> bool:
         """Whether the arm moves, whatever the driver says."""
+
+    @abstractmethod
+    def flange(self) -> RigidTransform:
+        """``base_T_flange``, whatever the driver says; turned so that its matrix differs from its
+        transpose."""
 
     @abstractmethod
     def cut(self) -> None:
@@ -82,6 +88,11 @@ class StopChannelContract(ABC):
         rotation = np.reshape(state.rotation, (3, 3))
         assert np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-9)
         assert np.linalg.det(rotation) == pytest.approx(1.0)
+        flange = opened.flange()
+        there = flange.rotation.as_matrix()
+        assert not np.allclose(there, there.T, atol=1e-3), "this bench would hide a transpose"
+        assert np.allclose(rotation, there, atol=1e-4)
+        assert np.allclose(state.position_m, flange.translation, atol=1e-5)
 
     def test_poll_does_not_block(self, opened: StopBench) -> None:
         self.watch(opened, lambda _: True)

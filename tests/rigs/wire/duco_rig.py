@@ -1,6 +1,6 @@
 """The driver of a collaborative arm and its fake controller, with a chaos proxy on both ports."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
@@ -10,7 +10,7 @@ from fakes.wire.duco.controller import DucoController
 from fakes.wire.duco.logic import DucoLogic
 from fakes.world.robot import RobotArm
 from tests.rigs.wire.proxy import ChaosProxy
-from tests.rigs.wire.standing_arm import standing_arm
+from tests.rigs.wire.standing_arm import READY_DEG, standing_arm
 
 CONTROLLER = {"tool": "flange", "work_frame": "base", "euler": "fixed-xyz", "stop_word": 1}
 CONTROLLER |= {"rearm_word": 2, "heartbeat_ms": 300, "host": "127.0.0.1"}
@@ -40,9 +40,11 @@ class DucoRig:
 
 
 @asynccontextmanager
-async def duco_rig(**changes: object) -> AsyncIterator[DucoRig]:
+async def duco_rig(
+    stands_deg: Sequence[float] = READY_DEG, **changes: object
+) -> AsyncIterator[DucoRig]:
     """The controller listens, the driver is not connected; both are stopped at the end."""
-    arm, clock = standing_arm()
+    arm, clock = standing_arm(stands_deg)
     controller = DucoController(DucoLogic(arm, clock))
     async with AsyncExitStack() as stack:
         await controller.start()

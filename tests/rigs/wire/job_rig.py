@@ -1,6 +1,6 @@
 """The SIASUN driver against the shipped job files, run by the interpreter."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ from fakes.world.robot import RobotArm
 from tests.rigs.wire.ports import free_ports
 from tests.rigs.wire.proxy import ChaosProxy
 from tests.rigs.wire.sjl_rig import arm_settings, connect_both
-from tests.rigs.wire.standing_arm import standing_arm
+from tests.rigs.wire.standing_arm import READY_DEG, standing_arm
 
 _REPORT_WORD = 34
 """The string that SJLSTA begins its reports with."""
@@ -52,6 +52,7 @@ async def job_rig(
     *,
     channels: tuple[Channel, ...] = ("CMD", "STA"),
     statement_s: float = 0.0002,
+    stands_deg: Sequence[float] = READY_DEG,
     **changes: object,
 ) -> AsyncIterator[JobRig]:
     """Wired up but neither end started; both are stopped at the end."""
@@ -63,7 +64,7 @@ async def job_rig(
             channel: await stack.enter_async_context(ChaosProxy(targets[channel]))
             for channel in channels
         }
-        arm, clock = standing_arm()
+        arm, clock = standing_arm(stands_deg)
         controller = JobController(
             arm,
             clock,

@@ -1,7 +1,7 @@
 """The SIASUN driver and the fake controller on free ports, with a chaos proxy on each channel."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from fakes.wire.sjl.stream import StreamOffer
 from fakes.world.robot import RobotArm
 from tests.rigs.wire.ports import free_ports
 from tests.rigs.wire.proxy import ChaosProxy
-from tests.rigs.wire.standing_arm import standing_arm
+from tests.rigs.wire.standing_arm import READY_DEG, standing_arm
 
 OFFER = StreamOffer()
 
@@ -67,6 +67,7 @@ async def sjl_rig(
     *,
     channels: tuple[Channel, ...] = ("CMD", "STA"),
     offer: StreamOffer | None = OFFER,
+    stands_deg: Sequence[float] = READY_DEG,
     **changes: object,
 ) -> AsyncIterator[Rig]:
     """Wired up but neither end started; both are stopped at the end. ``offer`` is what the job
@@ -79,7 +80,7 @@ async def sjl_rig(
             channel: await stack.enter_async_context(ChaosProxy(targets[channel]))
             for channel in channels
         }
-        arm, clock = standing_arm()
+        arm, clock = standing_arm(stands_deg)
         controller = SjlController(
             arm,
             clock,

@@ -1,7 +1,7 @@
 """The arm at the far end of tests and benchmarks of robots, standing."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -16,6 +16,8 @@ from tests.rigs.wire.scenarios import as_on_a_real_cell
 SCENARIO = Path(__file__).parents[3] / "config" / "deck.scenario.toml"
 READY_DEG = (0.0, -52.76637, 109.14017, 0.0, 33.6262, 90.0)
 """Deck above the station, away from limits and singularities."""
+TURNED_DEG = (4.0, -52.76637, 109.14017, 12.0, 33.6262, 70.0)
+"""The same, turned so that the matrix of the flange differs from its transpose."""
 
 
 @cache
@@ -25,9 +27,11 @@ def _drawn() -> tuple[Robot, RobotTruth]:
     return scenario.robots["main"], draw(scenario, seed=1).robots["main"]
 
 
-def standing_arm() -> tuple[RobotArm, Callable[[], float]]:
+def standing_arm(
+    stands_deg: Sequence[float] = READY_DEG,
+) -> tuple[RobotArm, Callable[[], float]]:
     """The arm and its clock."""
     arm = RobotArm(*_drawn(), seed=1)
-    arm.start_joint(0.0, np.radians(READY_DEG), 100.0)
+    arm.start_joint(0.0, np.radians(stands_deg), 100.0)
     started_s = time.monotonic() - arm.standstill_s
     return arm, lambda: time.monotonic() - started_s
