@@ -117,7 +117,8 @@ def _status_word(status: CellStatus, handshake: Handshake) -> int:
     # Both numbers are 0 before the first command: nothing is busy, and nothing is done either.
     ended = handshake.ack_seq == handshake.done_seq
     flags = {
-        "ready": status.ready,
+        # A Start of a client whose heartbeat is lost is refused.
+        "ready": status.ready and not handshake.heartbeat_lost,
         "busy": not ended,
         "done": ended and handshake.ack_seq != 0,
         "error": status.error,

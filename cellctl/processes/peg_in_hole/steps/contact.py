@@ -49,4 +49,5 @@ async def watch_phase(run: PegRun, motions: StreamedContact, phase: CyclePhase) 
     """Have the guard watch the limits of a phase; the arm stands in its stream meanwhile."""
     task = run.facts.plan.task
     tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+    run.board.update(force_limit_n=tolerance.force_n)
     await watch_closer(motions, run.facts.cell.arm, tolerance)

@@ -116,6 +116,15 @@ def test_the_status_word_has_its_bits() -> None:
     assert values(CellStatus(), Handshake(), 1)["status"] == 0
 
 
+@pytest.mark.parametrize("lost", [False, True])
+def test_a_client_without_a_heartbeat_sees_no_cell_that_is_ready(lost: bool) -> None:
+    """Its Start would be refused."""
+    names = [name for name, _ in STATUS_BITS]
+    word = values(CellStatus(ready=True), Handshake(heartbeat_lost=lost), 1)["status"]
+    assert isinstance(word, int)
+    assert bool(word & 1 << names.index("ready")) is not lost
+
+
 def test_alarms_beyond_eight_are_counted() -> None:
     shown = values(CellStatus(alarms=tuple(range(501, 511))), Handshake(), 1)
     assert shown["alarm_count"] == 10

@@ -166,6 +166,8 @@ async def test_a_peg_in_its_hole_is_recorded_with_its_search_which_the_guard_wat
     # Closer while the peg searches than while it is fed.
     watched = [limits.filtered[0] for limits in bench.world.guard.limits]
     assert watched == [20.0, 20.0, 37.5, 37.5]
+    # As the line is shown it.
+    assert bench.board.current.force_limit_n == 37.5
     written = {one["name"]: one["value"] for one in record.document(keys.CHOICE)["guard"]}
     assert written["guard, search"] == 20.0
     assert written["guard, insert"] == 37.5
