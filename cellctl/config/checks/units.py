@@ -43,6 +43,8 @@ def _looks_wrong(key: str, value: object) -> str:
 
 def _list(key: str, name: str, numbers: Sequence[float]) -> str:
     largest = _largest(numbers)
+    if len(numbers) == 6 and name == "pose":
+        name = key.split(".")[-2]  # a table with the place and how far off it may be
     if len(numbers) == 6 and "_T_" in name:
         return _pose(name, numbers)
     if len(numbers) == 6 and ("_deg" in name or ".poses_deg." in key):

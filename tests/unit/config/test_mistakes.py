@@ -18,6 +18,7 @@ from tests.unit.config.second_look_figures import FIGURES, OTHERS
 from tests.unit.config.second_look_places import PLACES
 from tests.unit.config.single_figures import SINGLE_FIGURES
 from tests.unit.config.third_day import IN_CELL_FILES, IN_DRAWINGS
+from tests.unit.config.touching_cells import TOUCHING_CELLS
 from tests.unit.config.undecided import UNDECIDED
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -46,7 +47,9 @@ def written(
 
 SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
-ALL = MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS
+ALL = (
+    MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS + TOUCHING_CELLS
+)
 
 
 def test_there_are_more_than_sixty_half_by_somebody_else_and_all_differ() -> None:

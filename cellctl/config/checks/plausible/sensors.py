@@ -13,6 +13,14 @@ _LEAST_RATE_HZ = 100.0
 _MOST_OVER_OTHERS = 5.0
 """Greatest ratio of two ranges in a sensor's data sheet: along its axis it carries about twice as
 much as across."""
+NOISE_SHARE = 1e-4
+"""Of the range: what the amplifier of a sensor leaves as noise in ten samples."""
+_LEVERS_M = (0.003, 1.0)
+"""Ranges of a moment over those of the forces: a sensor carries moments of its forces at about its
+own radius, from that of a fingertip to that of a turntable; N·mm make metres of it."""
+_USABLE = 0.9
+"""Share of a range that a limit may ask for: the zero offset of a sensor and the weight of what
+hangs on it lie within the same range."""
 
 
 def sensor_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
@@ -51,10 +59,19 @@ def _range(path: str, sensor: ForceSensorConfig) -> Iterator[ConfigIssue]:
         "free_moment_n_m": (sensor.free_moment_n_m, min(measuring[3:]), "N·m"),
     }
     for key, (limit, most, unit) in limits.items():
-        if limit > most:
+        if limit > _USABLE * most:
             # The sensor clips before the limit: the guard would never see it passed.
             allowed = (
-                f"at least {limit:g} {unit} in each axis, as {path}.{key} asks, or a lower limit"
+                f"at least {limit / _USABLE:.0f} {unit} in each axis, for {path}.{key} = {limit:g} "
+                "and a tenth that offset and weight take, or a lower limit"
             )
             yield ConfigIssue(f"{path}.settings.range", str(measuring), allowed)
             return
+    lever_m = max(measuring[3:]) / min(measuring[:3])
+    if not _LEVERS_M[0] <= lever_m <= _LEVERS_M[1]:
+        allowed = (
+            f"three forces in N, then three moments in N·m; {max(measuring[3:]):g} N·m at "
+            f"{min(measuring[:3]):g} N is a lever of {lever_m:g} m, which no such sensor has; or "
+            "were the moments in N·mm?"
+        )
+        yield ConfigIssue(f"{path}.settings.range", str(measuring), allowed)

@@ -6,6 +6,7 @@ from pathlib import Path
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import Bound, bound_issues
 from cellctl.config.checks.plausible.loads import G_M_S2
+from cellctl.config.checks.plausible.sensors import NOISE_SHARE
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.connector.connector import Connector
@@ -17,6 +18,8 @@ from cellctl.processes.antenna_module.settings import ReferenceSection
 _MOST_PER_CONTACT_N = 7.0
 """Twice what makers of D-subs to DIN 41652 state: 50 N for 15 contacts. Micro-Ds to MIL-DTL-83513
 take 2.78 N a contact."""
+_SIGMAS = 20.0
+"""A force that is compared with thresholds of a few standard deviations lies well above them."""
 
 
 def contact_bounds(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[Bound]:
@@ -56,6 +59,25 @@ def force_issues(
         against = (WrittenValue(f"{key}.socket", f"{recipe.socket!r}, force_n = {socket_n}"),)
         value = f"{recipe.plug!r}, force_n = {plug_n}"
         yield ConfigIssue(f"{key}.plug", value, allowed, against=against)
+
+
+def pull_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
+    """A sensor so strong that the pull of the test would be lost in its noise, or whose range is
+    written too high."""
+    name, pull_n = recipe.device(FORCE), recipe.insertion.pull_n
+    measuring = cell.force_sensors[name].settings.get("range")
+    if not isinstance(measuring, list) or len(measuring) != 6:
+        return
+    most_n = pull_n / (_SIGMAS * NOISE_SHARE)
+    if min(measuring[:3]) > most_n:
+        allowed = (
+            f"forces of at most {most_n:.0f} N: {NOISE_SHARE:g} of the range is a sensor's noise, "
+            f"and insertion.pull_n is to be {_SIGMAS:g} times as much; with a range that the "
+            "sensor does not have, a clipped force is taken for a true one"
+        )
+        against = (WrittenValue(f"{key}.insertion.pull_n", f"{pull_n:g}"),)
+        where = f"force_sensors.{name}.settings.range"
+        yield ConfigIssue(where, str(measuring), allowed, against=against)
 
 
 def _force_bound(cell: CellConfig, recipe: AntennaRecipe, key: str, connector: Connector) -> Bound:

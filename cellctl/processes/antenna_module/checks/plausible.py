@@ -15,6 +15,7 @@ from cellctl.processes.antenna_module.checks.drawn import (
     contact_bounds,
     force_issues,
     one_file_twice,
+    pull_issues,
 )
 from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds
 from cellctl.processes.antenna_module.checks.looks import OVER, look_issues
@@ -35,6 +36,7 @@ def plausible_issues(
     yield from one_file_twice(recipe, key, settings.reference, where)
     yield from bound_issues(contact_bounds(recipe, key, folder))
     yield from force_issues(cell, recipe, key, folder)
+    yield from pull_issues(cell, recipe, key)
     yield from bound_issues(arm_bounds(cell, arm, settings, where))
     yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_plug))
     yield from bound_issues(board_bounds(cell, settings, where, folder))

@@ -7,6 +7,7 @@ from typing import Any
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.plausible.sensors import NOISE_SHARE
 from cellctl.config.driver_settings import sensor_rate_hz
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.calibrations import CONTACT_LOOP
@@ -18,8 +19,6 @@ _LEAST_REPEATABILITY_MM = 0.005
 """No data sheet of a six-axis arm promises less."""
 _LEAST_HEIGHT_SHARE = 0.1
 """Of the repeatability: heights are read from the same joints."""
-_LEAST_RANGE_SHARE = 1e-4
-"""Of the sensor's range: what its amplifier leaves as noise in ten samples."""
 _STREAM_PERIOD_MS = 4.0
 """Of the fastest controllers; a setpoint takes effect two periods after the force at the least."""
 _SOFT_N_MM = 25.0
@@ -43,7 +42,7 @@ def loop_bounds(
     yield Bound(f"{where}.panel_shift_mm", settings.panel_shift_mm, why, most=most_mm)
     measuring = cell.force_sensors[recipe.device(FORCE)].settings.get("range")
     if isinstance(measuring, list) and len(measuring) == 6:
-        least_n = _LEAST_RANGE_SHARE * min(measuring[:3])
+        least_n = NOISE_SHARE * min(measuring[:3])
         why = (
             "1/10000 of the sensor's range is its own noise, and by less a dead sensor would be "
             "taken for a living one"
