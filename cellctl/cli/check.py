@@ -32,8 +32,9 @@ _UNDECIDED = (
 )
 
 _POSES = (
-    "contradict each other by less than 100 mm and 10 deg, as far as anything here can be compared;"
-    " whether they are right within that, only the cell shows"
+    "contradict each other by less than 100 mm and 10 deg, over places with taught_above_mm by "
+    "less than 10 mm and 3 deg, as far as anything here can be compared; whether they are right "
+    "within that, only the cell shows"
 )
 
 

@@ -15,6 +15,10 @@ BESIDE_MM, TURNED_DEG = 50.0, 10.0
 """A pose is taught by eye over a place that a drawing gives: nearer than this it is the same."""
 HIGHEST_MM = 300.0
 """Greatest height over a place; from higher up nobody teaches an approach."""
+NEAR_MM, NEAR_DEG, GAUGED_MM = 10.0, 3.0, 5.0
+"""A pose whose height was measured as it was taught: jogged to its place within a few millimetres
+and upright by a square. A rule is read to a millimetre or two, an arm whose geometry was not
+calibrated is off by as much, and so is a place that a drawing gives."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,8 +30,12 @@ class Over:
     flange_T_tool: RigidTransform
     base_T_tool: RigidTransform
     """Pose of the tool at the place itself; its z axis leads to it."""
+    key: str
+    """Of the place in the recipe, or the calibration that has it."""
     written: tuple[WrittenValue, ...]
     """The values that the place and the tool follow from."""
+    height_mm: float | None = None
+    """How high over the place the tool was when the pose was taught; None where nobody measured."""
     any_turn: bool = False
     """Whether the tool may be turned about its z axis, as a camera may that looks at the place."""
 
@@ -58,14 +66,40 @@ def over_place_issues(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:
     x_mm, y_mm, z_mm = (float(one) for one in tool_T_taught.translation / MM)
     turned_deg = _turned_deg(tool_T_taught, any_turn=over.any_turn)
     beside_mm, height_mm = float(np.hypot(x_mm, y_mm)), -z_mm
-    good = beside_mm <= BESIDE_MM and 0.0 <= height_mm <= HIGHEST_MM and turned_deg <= TURNED_DEG
-    if good:
+    most_mm, most_deg, least_height_mm, most_height_mm = _bounds(over)
+    high_enough = least_height_mm <= height_mm <= most_height_mm
+    if beside_mm <= most_mm and high_enough and turned_deg <= most_deg:
         return
     key = f"robots.{over.robot}.poses_deg.{over.pose}"
     allowed = (
-        f"over the place that the recipe gives, 0 to {HIGHEST_MM:g} mm, at most {BESIDE_MM:g} mm "
-        f"beside it and turned by at most {TURNED_DEG:g} deg; here the tool is {height_mm:.0f} mm "
-        f"over it, {beside_mm:.0f} mm beside it and turned by {turned_deg:.0f} deg"
+        f"over the place that the recipe gives, {least_height_mm:g} to {most_height_mm:g} mm, at "
+        f"most {most_mm:g} mm beside it and turned by at most {most_deg:g} deg; here the tool is "
+        f"{height_mm:.0f} mm over it, {beside_mm:.0f} mm beside it and turned by {turned_deg:.0f} "
+        "deg"
     )
     joints = str(list(cell.robots[over.robot].poses_deg[over.pose]))
-    yield ConfigIssue(key, joints, allowed, against=over.written)
+    yield ConfigIssue(key, joints, allowed, against=(*over.written, *_height(over)))
+
+
+def _height(over: Over) -> Iterator[WrittenValue]:
+    if over.height_mm is not None:
+        yield WrittenValue(f"{over.key}.taught_above_mm", f"{over.height_mm:g}")
+
+
+def _bounds(over: Over) -> tuple[float, float, float, float]:
+    """Most mm beside the place, most degrees, least and greatest height over it in mm."""
+    if over.height_mm is None:
+        return BESIDE_MM, TURNED_DEG, 0.0, HIGHEST_MM
+    lowest_mm, highest_mm = over.height_mm - GAUGED_MM, over.height_mm + GAUGED_MM
+    return NEAR_MM, NEAR_DEG, max(lowest_mm, 0.0), highest_mm
+
+
+def unmeasured_height(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:
+    """A remark on a place with which only contact would show that its height is wrong."""
+    if over.height_mm is not None or flange_at(cell, over.robot, over.pose) is None:
+        return
+    said = (
+        f"how far over the place the tool was as {over.pose} was taught, by a rule: without it "
+        "neither the height nor a tilt of place and tool is held against the cell before contact"
+    )
+    yield ConfigIssue(f"{over.key}.taught_above_mm", "(missing)", said)

@@ -76,18 +76,22 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         cls,
         cell: CellConfig,
         recipe: Recipe,
-        key: str,  # noqa: ARG003 - settings alone
+        key: str,
         folder: Path,
     ) -> Iterable[ConfigIssue]:
         """Another board than that of the stored cameras, and looks beside what was measured."""
         from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
+        from cellctl.processes.antenna_module.checks.above import above_remarks
         from cellctl.processes.antenna_module.checks.figures import board_remarks
         from cellctl.processes.antenna_module.checks.looks import look_remarks
+        from cellctl.processes.antenna_module.checks.plausible import marks_remarks
 
         settings = cast(AntennaSettings, cell.processes[recipe.process])
         plugged = cast(AntennaRecipe, recipe)
         yield from board_remarks(cell, settings, f"processes.{recipe.process}", folder)
         yield from look_remarks(cell, plugged, folder)
+        yield from above_remarks(cell, plugged, key)
+        yield from marks_remarks(plugged, key)
         yield from tool_floor_remarks(cell, plugged.device(ARM), plugged.flange_T_plug)
 
     @classmethod

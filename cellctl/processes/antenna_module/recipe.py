@@ -24,6 +24,14 @@ class Place(Section):
     tilt_sigma_deg: Annotated[float, Field(gt=0, le=1)] = 0.1
 
 
+class TaughtPlace(Place):
+    """A place over which a pose was taught, so that one can be held against the other."""
+
+    taught_above_mm: Annotated[float, Field(gt=0, le=300)] | None = None
+    """How high the plug stood over this place as ``above_tray`` or ``above_socket`` was taught, by
+    a rule: from the face of the socket, or from where the plug lies on the tray."""
+
+
 class Insertion(Section):
     """From the stand-off into the socket, and out of it where that fails."""
 
@@ -62,9 +70,9 @@ class AntennaRecipe(Recipe):
     worst_contact_mm: Annotated[float, Field(gt=0, le=1)] = 0.05
     """The predicted 99th percentile of the worst contact's offset may be this: the tolerance of the
     fit that the paper states."""
-    base_T_tray_plug: Place
+    base_T_tray_plug: TaughtPlace
     """The plug of a module on the tray."""
-    base_T_socket: Place
+    base_T_socket: TaughtPlace
     flange_T_plug: WrittenPose
     """How the gripper holds the plug."""
     flange_T_marks: WrittenPose

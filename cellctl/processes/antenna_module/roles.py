@@ -11,6 +11,9 @@ HOME = "home"
 TRAY_LOOK, INSPECT_PLUG, SOCKET_LOOK = "tray_look", "inspect_plug", "socket_look"
 """Camera I over the tray; the plug over camera II; camera I over the socket, with the flange at the
 height and in the orientation of plugging."""
+ABOVE_TRAY, ABOVE_SOCKET = "above_tray", "above_socket"
+"""The plug over its place on the tray, and over its socket, in the attitude in which it lies or
+goes in. No move goes there: what the recipe says of tray, socket and plug is held against them."""
 BOARD_LOOK, BOARD_SHOW = "board_look", "board_show"
 """Poses for calibration: camera I over the board on the table; the board on the flange over camera
 II."""

@@ -55,6 +55,8 @@ class HolePlace(Section):
     datum_depth_mm: Annotated[float, Field(ge=0, le=100)] = 0.0
     """So much deeper than the face lies what is touched: the panel round a plug that stands proud
     of it. 0 touches the face itself."""
+    taught_above_mm: Annotated[float, Field(gt=0, le=300)] | None = None
+    """How high the tip stood over the face as ``above_hole`` was taught, by a rule."""
 
 
 class Forces(Section):

@@ -128,13 +128,6 @@ LISTS = (
         remarked=True,
     ),
     Kind(
-        "a pose that a person taught for himself: no process goes there",
-        (
-            *_near("robots.arm.poses_deg.above_*"),
-            *_at("robots.arm.poses_deg.above_*", "0 5", "/10 sign"),
-        ),
-    ),
-    Kind(
         "beside what the stored cameras measured",
         (
             *_near("robots.arm.poses_deg.inspect_plug", "0 1 2"),

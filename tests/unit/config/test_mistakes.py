@@ -18,7 +18,7 @@ from tests.unit.config.second_look_figures import FIGURES, OTHERS
 from tests.unit.config.second_look_places import PLACES
 from tests.unit.config.single_figures import SINGLE_FIGURES
 from tests.unit.config.third_day import IN_CELL_FILES, IN_DRAWINGS
-from tests.unit.config.touching_cells import TOUCHING_CELLS
+from tests.unit.config.touching_cells import MEANT_PERHAPS, TOUCHING_CELLS
 from tests.unit.config.undecided import UNDECIDED
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -83,7 +83,7 @@ def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) 
     assert all(one.line is not None or one.key == "simulated" for one in found)
 
 
-@pytest.mark.parametrize("case", UNDECIDED, ids=lambda one: one.reason)
+@pytest.mark.parametrize("case", UNDECIDED + MEANT_PERHAPS, ids=lambda one: one.reason)
 def test_what_nobody_can_decide_passes_with_a_remark_where_there_is_one(
     tmp_path: Path, case: Undecided
 ) -> None:

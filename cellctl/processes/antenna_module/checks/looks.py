@@ -61,7 +61,7 @@ def look_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
         base_T_seen = pose_from_xyzabc(place.pose) * place_T_seen * OVER
         against = (WrittenValue(f"{where}.pose", str(list(place.pose))), camera)
         flange_T_camera = pose_from_xyzabc(written)
-        over = Over(arm, pose, flange_T_camera, base_T_seen, against, any_turn=True)
+        over = Over(arm, pose, flange_T_camera, base_T_seen, where, against, any_turn=True)
         yield from over_place_issues(cell, over)
 
 
@@ -78,14 +78,14 @@ def _fixed_camera(cell: CellConfig, recipe: AntennaRecipe, folder: Path) -> Iter
     if record is None:
         return
     base_T_camera = pose_from_record(record["base_T_camera"]).pose
-    board_mm = _settings(cell, recipe).flange_T_board_mm
+    arm, board_mm = recipe.device(ARM), _settings(cell, recipe).flange_T_board_mm
     shown = {
         INSPECT_PLUG: pose_from_xyzabc(recipe.flange_T_plug),
         BOARD_SHOW: RigidTransform.from_translation([0.0, 0.0, board_mm * MM]),
     }
     for pose, flange_T_shown in shown.items():
         place = base_T_camera * OVER
-        over = Over(recipe.device(ARM), pose, flange_T_shown, place, (), any_turn=True)
+        over = Over(arm, pose, flange_T_shown, place, _FIXED_CAMERA, (), any_turn=True)
         yield from _remarked(cell, over, _FIXED_CAMERA)
 
 
@@ -109,7 +109,8 @@ def _flange_camera(cell: CellConfig, recipe: AntennaRecipe, folder: Path) -> Ite
     board = pose_from_record(record["base_T_board"]).pose
     # A board has no side that it shows to the camera: its z may point either way.
     to_board = board if board.rotation.as_matrix()[2, 2] < 0.0 else board * OVER
-    over = Over(recipe.device(ARM), BOARD_LOOK, measured, to_board, (), any_turn=True)
+    arm = recipe.device(ARM)
+    over = Over(arm, BOARD_LOOK, measured, to_board, _FLANGE_CAMERA, (), any_turn=True)
     yield from _remarked(cell, over, _FLANGE_CAMERA)
 
 

@@ -1,7 +1,7 @@
 """Places of an antenna recipe that the arm cannot come to, and figures that no arm has."""
 
 from collections.abc import Iterator
-from math import dist
+from math import degrees, dist
 from pathlib import Path
 from typing import cast
 
@@ -11,6 +11,7 @@ from cellctl.config.checks.flange_places import flange_place_issues
 from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.processes.antenna_module.checks.above import above_issues
 from cellctl.processes.antenna_module.checks.drawn import (
     contact_bounds,
     force_issues,
@@ -23,6 +24,8 @@ from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ARM, FORCE
 from cellctl.processes.antenna_module.settings import AntennaSettings
 
+_MARKS_DEG = 45.0
+"""Half of the turn by which a drawing is laid out otherwise."""
 _MARKS_MM = 100.0
 """Marks and plug lie in one picture of camera II, within its depth of field."""
 
@@ -44,6 +47,7 @@ def plausible_issues(
     places = list(_places(cell, recipe, key))
     yield from places
     if not places:
+        yield from above_issues(cell, recipe, key)
         yield from look_issues(cell, recipe, key)
 
 
@@ -58,6 +62,20 @@ def _marks(recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
         )
         against = (WrittenValue(f"{key}.flange_T_plug", str(list(plug))),)
         yield ConfigIssue(f"{key}.flange_T_marks", str(list(marks)), allowed, against=against)
+
+
+def marks_remarks(recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
+    """Marks of the gripper that are turned against the plug between them."""
+    plug_T_marks = pose_from_xyzabc(recipe.flange_T_plug).inv() * pose_from_xyzabc(
+        recipe.flange_T_marks
+    )
+    turned_deg = degrees(plug_T_marks.rotation.magnitude())
+    if turned_deg > _MARKS_DEG:
+        said = (
+            f"turned by {turned_deg:.0f} deg against the plug, whose drawing and that of the marks "
+            "lie in one picture of camera II; right if the marks are drawn from the other side"
+        )
+        yield ConfigIssue(f"{key}.flange_T_marks", str(list(recipe.flange_T_marks)), said)
 
 
 def _places(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:

@@ -9,12 +9,13 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import bound_issues
 from cellctl.config.checks.flange_places import flange_place_issues
+from cellctl.config.checks.over_places import over_place_issues
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.plausible.fit import fit_bounds
 from cellctl.processes.peg_in_hole.plausible.forces import force_bounds
 from cellctl.processes.peg_in_hole.plausible.loop import loop_bounds
-from cellctl.processes.peg_in_hole.plausible.stream import above_hole_issues, stream_issues
+from cellctl.processes.peg_in_hole.plausible.stream import over_hole, stream_issues
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ARM
 from cellctl.processes.peg_in_hole.settings import PegSettings
@@ -34,7 +35,7 @@ def plausible_issues(
     yield from bound_issues(loop_bounds(cell, recipe, settings, folder))
     if places or figures:
         return  # ways that follow from a wrong place or drawing would be named again
-    above = list(above_hole_issues(cell, recipe, key))
+    above = list(over_place_issues(cell, over_hole(recipe, key)))
     yield from above
     if not above:
         yield from stream_issues(cell, recipe, settings, key)

@@ -6,8 +6,10 @@ from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
+from cellctl.config.checks.over_places import unmeasured_height
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.plausible.loop import soft_arm
+from cellctl.processes.peg_in_hole.plausible.stream import over_hole
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ARM
 from cellctl.processes.peg_in_hole.settings import PegSettings
@@ -38,5 +40,6 @@ def recipe_remarks(
     if recipe.seat.grip_n is None:
         said = "nothing is called inserted without it: measure at which force the part slips"
         yield ConfigIssue(f"{key}.seat.grip_n", "(missing)", said)
+    yield from unmeasured_height(cell, over_hole(recipe, key))
     yield from soft_arm(cell, recipe, settings, folder)
     yield from tool_floor_remarks(cell, recipe.device(ARM), recipe.flange_T_tip)

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import degrees, hypot
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import Over, flange_at, over_place_issues
+from cellctl.config.checks.over_places import Over, flange_at
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.plan.choice import TILTED
@@ -17,18 +17,19 @@ from cellctl.processes.peg_in_hole.stations import tip_at_hole
 _TRAVEL_MM, _TRAVEL_DEG = "max_stream_travel_mm", "max_stream_travel_deg"
 
 
-def above_hole_issues(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[ConfigIssue]:
-    """A pose above the hole that is not above it."""
+def over_hole(recipe: PegRecipe, key: str) -> Over:
+    """The tip over the hole, where it was taught."""
     place = WrittenValue(f"{key}.base_T_hole.pose", str(list(recipe.base_T_hole.pose)))
     tip = WrittenValue(f"{key}.flange_T_tip", str(list(recipe.flange_T_tip)))
-    over = Over(
+    return Over(
         recipe.device(ARM),
         ABOVE_HOLE,
         pose_from_xyzabc(recipe.flange_T_tip),
         tip_at_hole(recipe),
+        f"{key}.base_T_hole",
         (place, tip),
+        height_mm=recipe.base_T_hole.taught_above_mm,
     )
-    yield from over_place_issues(cell, over)
 
 
 def stream_issues(
