@@ -18,7 +18,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.over_places import Over, over_place_issues
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.processes.antenna_module.recipe import AntennaRecipe
+from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
 from cellctl.processes.antenna_module.roles import (
     ARM,
     BOARD_LOOK,
@@ -49,7 +49,7 @@ def look_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
         return
     camera = WrittenValue(f"cameras.{name}.flange_T_camera", str(list(written)))
     top, itself = pose_from_xyzabc(recipe.plug_T_top), RigidTransform.identity()
-    places = {
+    places: dict[str, tuple[str, Place, RigidTransform]] = {
         TRAY_LOOK: (f"{key}.base_T_tray_plug", recipe.base_T_tray_plug, top),
         SOCKET_LOOK: (f"{key}.base_T_socket", recipe.base_T_socket, itself),
     }
