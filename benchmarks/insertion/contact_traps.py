@@ -52,6 +52,8 @@ class TrapState(StrEnum):
     FROZEN = "sensor repeats a plausible value"
     STUCK = "sensor stays at a plausible value, with noise"
     WRONG_FACE = "face touched 1 mm wrong"
+    SLIPS_TO_STOP = "slips in a blocked hole up to a stop in the fingers"
+    ZERO_JUMPS = "zero of the sensor jumps in the feed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +82,8 @@ class _Made:
     z0_m: float = 0.0
     grip_n: float | None = None
     sensor: SensorFault | None = None
+    stop_m: float | None = None
+    """Way after which a slipping part meets a stop in the fingers; None without one."""
 
 
 def run_contact_trap(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
@@ -147,7 +151,7 @@ def _placed(
         base_T_flange,
         cell.imperfections,
         np.random.default_rng([seed, 7]),
-        injected=Injected(made.fit, made.grip_n, made.sensor),
+        injected=Injected(made.fit, made.grip_n, made.sensor, made.stop_m),
     )
     task_T_tip = base_T_task.inv() * base_T_flange * flange_T_tip
     return world, ContactFrames(base_T_task, flange_T_tip, task_T_tip.rotation)
@@ -210,6 +214,22 @@ def _stuck(made: _Made, rng: np.random.Generator) -> _Made:
     return made
 
 
+def _slipping_to_stop(made: _Made, rng: np.random.Generator) -> _Made:
+    """The part ends short of its seat by as much as it slips, and stands there as on a seat."""
+    made.stop_m = float(rng.uniform(0.5e-3, 0.7 * made.fit.depth_m))
+    made.fit = replace(made.fit, depth_m=made.fit.depth_m - made.stop_m)
+    # Less would slip in a search, and more than the feed pushes with does not slip.
+    made.grip_n = float(rng.uniform(5.0, 15.0))
+    return made
+
+
+def _zero_jumps(made: _Made, rng: np.random.Generator) -> _Made:
+    jump_n = float(rng.uniform(5.0, 20.0)) * float(rng.choice([-1.0, 1.0]))
+    jump = np.array([0.0, 0.0, jump_n, 0.0, 0.0, 0.0])
+    made.sensor = SensorFault(lambda sample, _last: sample + jump)
+    return made
+
+
 def _wrong_face(made: _Made, rng: np.random.Generator) -> _Made:
     made.z0_m = 1e-3 * float(rng.choice([-1.0, 1.0]))
     return made
@@ -225,4 +245,6 @@ _MAKE: Mapping[TrapState, Callable[[_Made, np.random.Generator], _Made]] = {
     TrapState.FROZEN: _frozen,
     TrapState.STUCK: _stuck,
     TrapState.WRONG_FACE: _wrong_face,
+    TrapState.SLIPS_TO_STOP: _slipping_to_stop,
+    TrapState.ZERO_JUMPS: _zero_jumps,
 }

@@ -67,6 +67,8 @@ class Injected:
     fit: Fit | None = None
     grip_n: float | None = None
     sensor: SensorFault | None = None
+    slip_stop_m: float | None = None
+    """Way after which a slipping part meets a stop in the fingers; None without one."""
 
 
 class ContactWorld:
@@ -94,6 +96,7 @@ class ContactWorld:
         self._waiting = [self.flange] * DELAY_TICKS
         self._imperfections, self._rng = imperfections, rng
         self._error_m = np.zeros(3)
+        self._slip_stop_m = made.slip_stop_m or np.inf
         stiffness = robot_stiffness(scenario.compliance)
         grip_n = made.grip_n or scenario.peg.grip_force_n
         begins = pose_of(self._hole_inverse @ self.flange @ self._flange_T_peg)
@@ -128,6 +131,9 @@ class ContactWorld:
         wrenches, tips_m, times_s = np.empty((steps, 6)), np.empty((steps, 3)), []
         for step in range(steps):
             self.peg.follow(pose_of(held[step]), STEP_S)
+            if self.peg.slip_m >= self._slip_stop_m:
+                self.peg.hold_with(np.inf)
+                self._slip_stop_m = np.inf
             wrenches[step], tips_m[step] = self.peg.wrench, self.peg.pose[:3]
             self.now_s += STEP_S
             times_s.append(self.now_s)

@@ -1,6 +1,6 @@
 """Pegs that are not inserted, fed, pushed and judged in the contact model (R4 of the study).
 
-``python -m benchmarks.insertion.trap_campaign -n 125`` makes 1000 traps on the pin. Each is judged
+``python -m benchmarks.insertion.trap_campaign -n 125`` makes 1250 traps on the pin. Each is judged
 twice: as the run does, and from its recorded curve. Exit code 1 when a part is called inserted that
 is not.
 """

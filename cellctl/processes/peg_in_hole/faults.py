@@ -8,8 +8,9 @@ ByTouchError
 ├── PanelOffReference                               337      the face against its reference
 ├── PegJammed, PegWedged, HoleBlocked               552–554  the insertion
 └── PegNotInserted
-    └── SensorDead, PegSlipped, NotSeated, FalseSeat,
-        HoleTooWide, PegNotHeld                     590–595  the verdict
+    ├── SensorDead, PegSlipped, NotSeated, FalseSeat,
+    │   HoleTooWide, PegNotHeld                     590–595  the verdict
+    └── ForceActsWithFeed                           599      feed and verdict
 """
 
 from typing import ClassVar
@@ -183,9 +184,13 @@ class PegSlipped(PegNotInserted):
     text = "The part has slipped in the gripper, or nobody can tell"
     cause = (
         "A force above 60 % of the grip force, a face that carried the part while the arm went on, "
-        "or a rear that is not where the drawing has it."
+        "a force that stayed before the seat while the arm went on, or a rear that is not where "
+        "the drawing has it."
     )
-    remedy = "Take the part out by hand; check jaws and grip pressure; measure the grip force."
+    remedy = (
+        "Take the part out by hand; check jaws and grip pressure; measure the grip force. If the "
+        "part has contacts that hold it back before its seat, state them as fit.contacts."
+    )
     leaves_hole = False
 
 
@@ -223,3 +228,16 @@ class PegNotHeld(PegNotInserted):
     text = "The part can be turned or pulled out"
     cause = "The key has not engaged, or the lock of the connector is open."
     remedy = "Plug the part by hand and compare; check keys and lock."
+
+
+class ForceActsWithFeed(PegNotInserted):
+    """The sensor shows that the hole pulls the part in, which no hole does."""
+
+    number = 599
+    text = "The force acts with the feed instead of against it"
+    cause = "The zero of the force sensor has moved since the tare, or an axis has another sign."
+    remedy = (
+        "The part was pushed harder than the sensor shows: take it out by hand and look at it. "
+        "Check cable and mounting of the sensor, and its zero with nothing touching."
+    )
+    leaves_hole = False

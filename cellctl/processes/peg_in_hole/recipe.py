@@ -25,6 +25,15 @@ class KeysSection(Section):
     """The plug is turned by no more than this when it arrives, in 99 of 100 cases."""
 
 
+class ContactsSection(Section):
+    """Contacts or springs inside a plug, which hold it back on its way to the seat."""
+
+    depth_mm: _Length
+    """From the face to where they begin."""
+    most_n: _Force
+    """Greatest force that they take on the way, by their data sheet or by good insertions."""
+
+
 class Fit(Section):
     """Peg and hole by the drawing, mm."""
 
@@ -40,6 +49,9 @@ class Fit(Section):
     friction: Annotated[float, Field(gt=0, lt=1)] = 0.2
     keys: KeysSection | None = None
     """Left out for a round part."""
+    contacts: ContactsSection | None = None
+    """Left out for a part that only friction holds back before its seat: any other force on the way
+    counts as a part that slips in the gripper."""
 
 
 class HolePlace(Section):

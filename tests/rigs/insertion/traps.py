@@ -130,11 +130,14 @@ def run_trap(task: SearchTask, state: PegState, seed: int) -> TrapOutcome:
         depth_m=depth_m,
         seat_force_n=float(rng.uniform(8, 20)),
         seat_slope_n_m=task.cell.stiffness_n_m * float(rng.uniform(0.6, 1.0)),
+        # Slips that nothing on the way tells of.
+        held_way_m=0.0,
+        with_feed_n=0.0,
         capture=capture,
         greatest_force_n=greatest_n,
         grip_force_n=_GRIP_N,
         retouch_error_m=-shallow_m + float(rng.normal(0, 0.03e-3)) if retouched else None,
     )
     judgement = judge_peg(evidence, task, SEAT)
-    captured = all(check.passed for check in judgement.checks[4:8])
+    captured = all(check.passed for check in judgement.checks[6:10])
     return TrapOutcome(state, judgement, captured)

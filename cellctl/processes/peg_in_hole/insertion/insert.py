@@ -12,7 +12,13 @@ from cellctl.cell.contact_motion.motions import (
     Ended,
     never,
 )
-from cellctl.processes.peg_in_hole.faults import HoleBlocked, NotSeated, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.faults import (
+    ForceActsWithFeed,
+    HoleBlocked,
+    NotSeated,
+    PegJammed,
+    PegWedged,
+)
 from cellctl.processes.peg_in_hole.insertion.felt import (
     Standing,
     greatest_axial_n,
@@ -21,6 +27,8 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
 )
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
+from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m
+from cellctl.processes.peg_in_hole.insertion.with_feed import ForceWithFeed, with_feed_n
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 SEAT_TOLERANCE_M = 0.3e-3
@@ -41,6 +49,10 @@ class Fed:
     """Less what arm and contact give way under the force."""
     seat_force_n: float
     seat_slope_n_m: float | None
+    held_way_m: float
+    """Of the last feed, as ``held_way_m`` has it."""
+    with_feed_n: float
+    """Of the last feed, as ``with_feed_n`` has it."""
     greatest_force_n: float
     recoveries: tuple[str, ...]
     samples: tuple[ContactSample, ...]
@@ -51,7 +63,8 @@ async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float
 
     The touches of the face had yielded by ``face_yields_m``, so that frame A lies deeper than the
     face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with
-    the figures where the peg stands, and ``NotSeated`` where no seat stops it.
+    the figures where the peg stands, ``NotSeated`` where no seat stops it, and
+    ``ForceActsWithFeed``.
     """
     if task.fit.keys is not None:
         await find_keyway(motions, task, task.fit.keys)
@@ -89,8 +102,13 @@ class _Feed:
         limit_n = self._task.limits.insertion_n
         yields_m = limit_n / self._task.cell.stiffness_n_m
         target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
-        motion = await self._motions.feed(target_m, limit_n)
+        watched = ForceWithFeed(self._task.cell)
+        motion = await self._motions.feed(target_m, limit_n, watched.take)
         self._samples += motion.samples
+        if motion.ended is Ended.CONDITION:
+            raise ForceActsWithFeed(
+                f"{watched.greatest_n:.1f} N into the hole: {Standing.of(motion.last)}"
+            )
         return motion
 
     def short_of_seat(self, motion: ContactMotion) -> bool:
@@ -103,11 +121,15 @@ class _Feed:
 
     def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
         """What is known at the end of the last feed."""
-        end = Standing.of(motion.last)
+        end, task = Standing.of(motion.last), self._task
         return Fed(
             depth_m=self._unloaded_m(end),
             seat_force_n=end.axial_n,
             seat_slope_n_m=seat_slope_n_m(motion.samples),
+            held_way_m=held_way_m(
+                motion.samples, task.fit, task.cell.friction, task.cell.stiffness_n_m
+            ),
+            with_feed_n=with_feed_n(motion.samples, task.cell),
             greatest_force_n=greatest_axial_n(self._samples),
             recoveries=recoveries,
             samples=tuple(self._samples),

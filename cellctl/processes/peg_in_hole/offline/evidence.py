@@ -13,6 +13,8 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
     seat_slope_n_m,
     unloaded_depth_m,
 )
+from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m
+from cellctl.processes.peg_in_hole.insertion.with_feed import LEAST_SIGN_N, with_feed_n
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
 from cellctl.processes.peg_in_hole.offline.split import CurveParts, by_motions
@@ -21,8 +23,6 @@ from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, La
 from cellctl.processes.peg_in_hole.verdict.holding import MET_NM
 from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, capture_of
 
-_LEAST_SIGN_N = 2.0
-"""A smaller force along the axis says nothing about its sign."""
 _TOO_DEEP = 3.0
 """Times the depth of the hole: no hole is so much deeper than its drawing, but a unit may be."""
 
@@ -38,6 +38,8 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
         depth_m=unloaded_depth_m(end, task.cell.stiffness_n_m, task.face_yields_m),
         seat_force_n=end.axial_n,
         seat_slope_n_m=seat_slope_n_m(parts.feed),
+        held_way_m=held_way_m(parts.feed, fit, task.cell.friction, task.cell.stiffness_n_m),
+        with_feed_n=with_feed_n(parts.feed, task.cell),
         capture=_capture(parts, task),
         greatest_force_n=max(greatest_axial_n(curve.samples), task.greatest_n),
         grip_force_n=task.grip_n,
@@ -93,16 +95,16 @@ def _require_depths(curve: PegCurve, task: TaskOfCurve) -> None:
 def _pressed_at_lowest(curve: PegCurve, depth_m: Array) -> bool:
     axial_n = np.array([abs(float(sample.force_n[2])) for sample in curve.samples])
     low = depth_m < depth_m.min() + 0.1 * np.ptp(depth_m)
-    return bool(axial_n[low].max() > _LEAST_SIGN_N)
+    return bool(axial_n[low].max() > LEAST_SIGN_N)
 
 
 def _require_signs(curve: PegCurve, parts: CurveParts, task: TaskOfCurve) -> None:
     """The hole pushes a peg back that is fed, and a wall one that is pushed against it."""
     axial_n = np.array([-float(sample.force_n[2]) for sample in parts.feed])
-    if -axial_n.min() > max(_LEAST_SIGN_N, axial_n.max()):
+    if -axial_n.min() > max(LEAST_SIGN_N, axial_n.max()):
         raise PegCurveInvalid(
             f"fz is {-axial_n.min():.3g} N into the hole where the peg is fed: those are forces on "
-            "the hole (force_on), or an axis out of it (height)"
+            "the hole (force_on), an axis out of it (height), or a sensor that has lost its zero"
         )
     other = _split(_sides_turned_round(curve), task)
     for axis, name in ((0, "fx"), (1, "fy")):

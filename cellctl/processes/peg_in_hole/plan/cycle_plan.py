@@ -10,9 +10,16 @@ from cellctl.processes.peg_in_hole.plan.task import (
     FitGeometry,
     ForceLimits,
     KeyGeometry,
+    PartContacts,
     SearchTask,
 )
-from cellctl.processes.peg_in_hole.recipe import Fit, KeysSection, PegRecipe, Seat
+from cellctl.processes.peg_in_hole.recipe import (
+    ContactsSection,
+    Fit,
+    KeysSection,
+    PegRecipe,
+    Seat,
+)
 from cellctl.processes.peg_in_hole.search.face import FacePlan
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.verdict.judgement import PegSeatLimits
@@ -42,6 +49,10 @@ def _keys(section: KeysSection) -> KeyGeometry:
     )
 
 
+def _contacts(section: ContactsSection) -> PartContacts:
+    return PartContacts(section.depth_mm * MM, section.most_n)
+
+
 def seat_limits(fit: Fit, seat: Seat) -> PegSeatLimits:
     """What a good part feels like at its seat."""
     return PegSeatLimits(seat.least_n, seat.most_n, keyed=fit.keys is not None, pull_n=seat.pull_n)
@@ -58,6 +69,7 @@ def fit_geometry(fit: Fit) -> FitGeometry:
         fit.depth_mm * MM,
         None if outer_mm is None else outer_mm * MM,
         None if fit.keys is None else _keys(fit.keys),
+        None if fit.contacts is None else _contacts(fit.contacts),
     )
 
 

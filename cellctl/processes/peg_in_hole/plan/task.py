@@ -25,6 +25,16 @@ class KeyGeometry:
 
 
 @dataclass(frozen=True, slots=True)
+class PartContacts:
+    """Contacts or springs inside, which hold the part back on its way to the seat."""
+
+    depth_m: float
+    """Depth of the tip at which they begin."""
+    most_n: float
+    """Greatest force that they take on the way."""
+
+
+@dataclass(frozen=True, slots=True)
 class FitGeometry:
     """Peg and hole by the drawing."""
 
@@ -40,6 +50,8 @@ class FitGeometry:
     """Radius of the raised plug that has the hole; None for a hole in a plate."""
     keys: KeyGeometry | None = None
     """The keys; None for a round part."""
+    contacts: PartContacts | None = None
+    """None for a part that nothing but friction holds back before its seat."""
 
     @property
     def bore_radius_m(self) -> float:

@@ -29,6 +29,10 @@ class InsertionEvidence:
     seat_force_n: float | None
     seat_slope_n_m: float | None
     """Rise of the axial force over depth at the seat."""
+    held_way_m: float | None
+    """Way of the feed on which more than its walls and its seat have held the part back."""
+    with_feed_n: float | None
+    """Greatest force that has acted with the feed instead of against it."""
     capture: LateralCapture | None
     greatest_force_n: float | None
     """Along the axis, ever since the part was gripped."""

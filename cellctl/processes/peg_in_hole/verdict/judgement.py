@@ -14,6 +14,7 @@ from typing import Any
 from cellctl.calibration.checks import Checks, LimitCheck
 from cellctl.processes.peg_in_hole.faults import (
     FalseSeat,
+    ForceActsWithFeed,
     HoleTooWide,
     NotSeated,
     PegNotHeld,
@@ -21,12 +22,15 @@ from cellctl.processes.peg_in_hole.faults import (
     PegSlipped,
     SensorDead,
 )
+from cellctl.processes.peg_in_hole.insertion.with_feed import most_with_feed_n
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 
 _MM = 1e-3
 # Items 1, 7, 5 and 4 of section 5.4.
 _SEAT_MM, _RETOUCH_MM, _STEADY_MM, _PLAY_MM = 0.3, 0.15, 0.1, 0.1
+_HELD_MM = 0.2
+"""A part that has slipped by more is told from one that has not (peg_slip of section 5.2)."""
 _LEAST_SLOPE = 0.3
 """Rise of the force at the seat over the stiffness of arm and contact."""
 _LEAST_SIGMAS = 5.0
@@ -39,14 +43,18 @@ DEPTH, LOW_FORCE, HIGH_FORCE = "distance from the seat", "seat force", "greatest
 SLOPE = "rise of the force at the seat"
 RESISTED, PLAY_X, PLAY_Y = "directions that resist", "play along x", "play along y"
 STEADY, ALIVE = "depth change when pushed sideways", "force change when pushed sideways"
+HELD, WITH_FEED = "way held back before the seat", "force with the feed"
 SLIP, RETOUCH = "greatest force over grip force", "error of the touch on the rear"
 KEYED, PULL = "directions that resist a turn", "pull that was held"
 
 _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
     # The first that fits: what makes other figures worthless comes first. A peg on the face hardly
-    # resists a push, which looks like a dead sensor too; hence slip before that.
+    # resists a push, which looks like a dead sensor too; hence slip before that. A sensor that
+    # stays at a value looks like a part that is held back.
+    (frozenset({WITH_FEED}), ForceActsWithFeed),
     (frozenset({SLIP, RETOUCH}), PegSlipped),
     (frozenset({ALIVE}), SensorDead),
+    (frozenset({HELD}), PegSlipped),
     (frozenset({DEPTH, LOW_FORCE, HIGH_FORCE, SLOPE}), NotSeated),
     (frozenset({RESISTED, STEADY}), FalseSeat),
     (frozenset({PLAY_X, PLAY_Y}), HoleTooWide),
@@ -120,6 +128,7 @@ def judge_peg(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLimits
     return PegJudgement(
         (
             *_seat_checks(evidence, task, seat),
+            *_feed_checks(evidence, task),
             *_capture_checks(evidence.capture, task),
             _slip_check(evidence),
             *_holding_checks(evidence, seat),
@@ -136,6 +145,13 @@ def _seat_checks(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLim
         LimitCheck(LOW_FORCE, force_n, seat.least_n, "N", "min"),
         LimitCheck(HIGH_FORCE, force_n, seat.most_n, "N"),
         LimitCheck(SLOPE, slope, least_slope, "N/m", "min"),
+    )
+
+
+def _feed_checks(evidence: InsertionEvidence, task: JudgedTask) -> Checks:
+    return (
+        LimitCheck(HELD, _known(evidence.held_way_m) / _MM, _HELD_MM, "mm"),
+        LimitCheck(WITH_FEED, _known(evidence.with_feed_n), most_with_feed_n(task.cell), "N"),
     )
 
 

@@ -35,6 +35,13 @@ def test_a_sensor_is_true_until_its_fault_begins(cell: CycleCell) -> None:
     np.testing.assert_array_equal(sensor.tell(sample, 5.0), -sample)
 
 
+@pytest.mark.parametrize("seed", [1, 2])
+def test_a_part_that_slips_to_a_stop_has_slipped(cell: CycleCell, seed: int) -> None:
+    trap = run_contact_trap(cell, TrapState.SLIPS_TO_STOP, seed)
+    assert (trap.inserted, trap.seated, trap.fault) == (False, False, "F591")
+    assert trap.by_curve == "not inserted"
+
+
 def test_a_frozen_sensor_ends_the_feed_and_nobody_calls_that_inserted(cell: CycleCell) -> None:
     trap = run_contact_trap(cell, TrapState.FROZEN, 5)
     assert not trap.inserted

@@ -2,7 +2,7 @@ from dataclasses import fields, replace
 
 import pytest
 
-from cellctl.processes.peg_in_hole.faults import PegNotHeld, PegSlipped
+from cellctl.processes.peg_in_hole.faults import ForceActsWithFeed, PegNotHeld, PegSlipped
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, PegSeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
@@ -13,6 +13,8 @@ GOOD = InsertionEvidence(
     depth_m=12.1e-3,
     seat_force_n=10.0,
     seat_slope_n_m=0.8e6,
+    held_way_m=0.02e-3,
+    with_feed_n=0.5,
     capture=LateralCapture(4, 0.04e-3, 0.05e-3, 0.01e-3, 30.0),
     greatest_force_n=12.0,
     grip_force_n=40.0,
@@ -26,7 +28,7 @@ def test_all_items_make_an_inserted_peg() -> None:
     judgement = judge_peg(GOOD, pin(), SEAT)
     assert judgement.inserted
     assert judgement.to_record()["fault"] is None
-    assert len(judgement.checks) == 12
+    assert len(judgement.checks) == 14
 
 
 @pytest.mark.parametrize(
@@ -47,6 +49,17 @@ def test_a_great_force_asks_for_the_touch_on_the_rear() -> None:
     assert touched.inserted
     assert RETOUCH in {check.name for check in touched.checks}
     assert SLIP in {check.name for check in judge_peg(GOOD, pin(), SEAT).checks}
+
+
+def test_a_part_that_was_held_back_on_its_way_has_slipped() -> None:
+    # Far below the grip force that is stated: the fingers rub with less than they were measured.
+    judgement = judge_peg(replace(GOOD, held_way_m=0.3e-3), pin(), SEAT)
+    assert isinstance(judgement.fault, PegSlipped)
+
+
+def test_a_force_with_the_feed_is_none_that_a_hole_makes() -> None:
+    judgement = judge_peg(replace(GOOD, with_feed_n=12.0), pin(), SEAT)
+    assert isinstance(judgement.fault, ForceActsWithFeed)
 
 
 def test_a_part_without_keys_needs_no_turn() -> None:
