@@ -9,6 +9,12 @@ export const PRIORITY = { abort: 1, stop: 2, hold: 2, warn: 3 };
 export const MARKS = { 1: "■1", 2: "▲2", 3: "▼3" };
 
 export function priority(alarm) { return PRIORITY[alarm.reaction] || 1; }
+export function mark(alarm) { return MARKS[priority(alarm)]; }
+
+// The gravest on top, of equal ones that which came first.
+export function byGravity(alarms, first) {
+  return [...alarms].sort((a, b) => priority(a) - priority(b) || (b.number === first) - (a.number === first));
+}
 
 function remedy(number, english) { return given(`remedy_${number}`, english); }
 

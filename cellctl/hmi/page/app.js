@@ -37,6 +37,8 @@ function head() {
   $("who").replaceChildren(...(visitor.person ? [visitor.person, h("small", {}, `${t(visitor.idle ? "idle" : `role_${visitor.role}`)} · ${where}`)] : [t("sign_in")]));
 }
 
+function title(text) { return spoken(text).split(/: |：/)[0]; }
+
 function band() {
   const place = $("band");
   const s = cell.snapshot;
@@ -45,9 +47,10 @@ function band() {
     kind = "p1";
     text = cell.refused ? t(cell.refused) : t("stale", Math.round(Number.isFinite(ageS()) ? ageS() : (performance.now() - since) / 1000));
   } else if (s.alarms.length) {
-    const first = s.alarms.find((one) => one.number === s.faults[0]?.number) || s.alarms[0];
-    kind = `p${alarms.priority(first)}`;
-    text = `${alarms.MARKS[alarms.priority(first)]} ${spoken(first.text)}${s.alarms.length > 1 ? ` (+${s.alarms.length - 1})` : ""}`;
+    const [gravest, ...others] = alarms.byGravity(s.alarms, s.faults[0]?.number);
+    kind = `p${alarms.priority(gravest)}`;
+    // Each by its title: one of them may be what somebody has to know before the first one is cleared.
+    text = [`${alarms.mark(gravest)} ${spoken(gravest.text)}`, ...others.map((one) => `${alarms.mark(one)} ${title(one.text)}`)].join(" · ");
   } else if (s.stop_not_confirmed) [kind, text] = ["p1", t("stop_not_confirmed")];
   if (place.dataset.text === text && place.className === kind) return;
   place.className = kind;
