@@ -69,7 +69,9 @@ def check(
     answers = _asked(cell, cell_file, socket) if connect and cell is not None else []
     bad_moves = list(_bad_moves(console, cell_file, quiet=as_json)) if moves and not found else []
     if as_json:
-        typer.echo(as_plain(_as_json(cell_file, found, remarks, answers, bad_moves)))
+        hints = [] if cell is None else _hints_of_this_pc(cell, cell_file.parent)
+        told = _as_json(cell_file, found, remarks, answers, bad_moves)
+        typer.echo(as_plain(told | {"hints": hints}))
     elif answers:
         from cellctl.cli.connecting.connect import show
 
@@ -223,17 +225,28 @@ def _say_how_sensors_lie(console: Console, cell: CellConfig) -> None:
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:
     """Hints, not errors: whoever checks a file is often neither the user nor on the PC that the
     daemon runs as and on."""
+    for hint in _hints_of_this_pc(cell, folder):
+        console.print(f"  {hint}", style="yellow", markup=False)
+
+
+def _hints_of_this_pc(cell: CellConfig, folder: Path) -> list[str]:
     folders = {"data_dir": Path(cell.data_dir), "calibration_dir": folder / cell.calibration_dir}
     hints = [
         f"{key} {path}: this user may not write it, the daemon's must"
         for key, path in folders.items()
         if not may_write(path)
     ]
+    calibrations = folders["calibration_dir"]
+    if not any(calibrations.glob("*.json")):
+        there = "holds no calibration" if calibrations.is_dir() else "no such folder on this PC"
+        hints.append(
+            f"calibration_dir {calibrations}: {there}: right for a cell that is still to be "
+            "calibrated; what checks hold against calibrations was not checked"
+        )
     group = cell.local_api.group
     if group and not _is_group(group):
         hints.append(f"local_api.group {group}: this PC has no such group, the cell's must")
-    for hint in hints:
-        console.print(f"  {hint}", style="yellow", markup=False)
+    return hints
 
 
 def _is_group(name: str) -> bool:

@@ -17,6 +17,7 @@ from cellctl.command.permitted import permitted
 from cellctl.command.validator import line_in_control
 from cellctl.errors import CellError
 from cellctl.fault_catalogue import known_fault
+from cellctl.force.gravity.gravity_compensation import GRAVITY_M_S2
 from cellctl.guard.client import GuardClient
 from cellctl.packml.state import State
 from cellctl.runtime.alarms import ActiveAlarm
@@ -29,6 +30,9 @@ SLOW_PERIOD_S = 0.5
 PRESSES_N = 10.0
 """Force from which on an arm may press: above what the zero of a sensor drifts by, and below every
 force of a mating."""
+_UNTARED_SHARE = 0.02
+"""What a compensation leaves of a weight away from the attitude for which it was identified: twice
+the cross-talk of 1 % that data sheets state."""
 _STOPPED = frozenset({State.STOPPED, State.ABORTED})
 _POSE = (("x", "mm"), ("y", "mm"), ("z", "mm"), ("rx", "°"), ("ry", "°"), ("rz", "°"))
 _WRENCH = (("Fx", "N"), ("Fy", "N"), ("Fz", "N"), ("Mx", "N·m"), ("My", "N·m"), ("Mz", "N·m"))
@@ -155,12 +159,24 @@ class LiveView:
             "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
             "compensated": weighed,
             "limit_n": number(status.force_limit_n),
-            "presses_n": _pressing_n(status.state, wrench),
+            "presses_n": _pressing_n(status.state, wrench, self._least_n(name)),
             "trip": "" if awaited else stopped,
             "touch": stopped if awaited else "",
             "wrench": _limited(_WRENCH, shown),
             "peaks": [number(value) for value in status.force_peaks],
         }
+
+    def _least_n(self, name: str) -> float:
+        """Force from which on the arm of a sensor may press.
+
+        In the sensor's own axes nothing was tared since the last free move, or since the start:
+        what is felt then is as well what the compensation leaves of the load.
+        """
+        config = self._cell.config
+        load = config.robots[config.force_sensors[name].mounted_on].load
+        if self._cell.guards[name].in_part_frame or load is None:
+            return PRESSES_N
+        return max(PRESSES_N, _UNTARED_SHARE * load.mass_kg * GRAVITY_M_S2)
 
 
 def _guard(guard: GuardClient) -> Object:
@@ -171,13 +187,13 @@ def _guard(guard: GuardClient) -> Object:
     }
 
 
-def _pressing_n(state: State, wrench: Sequence[float]) -> float | None:
+def _pressing_n(state: State, wrench: Sequence[float], least_n: float) -> float | None:
     """What an arm that was stopped presses with, N; None where it moves or hardly presses.
 
     Only where nothing moves by itself, but a Reset may: there somebody has to know before.
     """
     force_n = math.hypot(*wrench[:3])
-    return force_n if state in _STOPPED and force_n >= PRESSES_N else None
+    return force_n if state in _STOPPED and force_n >= least_n else None
 
 
 def number(value: float) -> float | None:

@@ -95,6 +95,21 @@ def test_a_data_folder_that_may_not_be_written_is_a_hint(
     assert "calibration_dir" not in done.output
 
 
+@pytest.mark.parametrize(
+    ("folder", "said"),
+    [("elsewhere/calibrations", "no such folder on this PC"), ("features", "holds no calibration")],
+)
+def test_a_folder_without_calibrations_is_a_hint(tmp_path: Path, folder: str, said: str) -> None:
+    path = written(tmp_path, "deck.toml", '"demo-calibration"', f'"{folder}"')
+    done = CliRunner().invoke(whole_app(), ["check", str(path)])
+    assert done.exit_code == 0, done.output
+    assert f"calibration_dir {tmp_path / folder}: {said}: right for a cell that is still" in (
+        done.output
+    )
+    as_json = json.loads(CliRunner().invoke(whole_app(), ["check", str(path), "--json"]).stdout)
+    assert any(said in hint for hint in as_json["hints"])
+
+
 def test_every_move_is_held_against_the_model_beside_the_file(tmp_path: Path) -> None:
     cell_file = written(tmp_path, "insertion-pin.toml")
     done = CliRunner().invoke(whole_app(), ["check", "--moves", str(cell_file)])
