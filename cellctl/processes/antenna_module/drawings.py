@@ -9,8 +9,18 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
 from cellctl.processes.antenna_module.connector.marks import Marks, read_marks
 from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
+from cellctl.processes.antenna_module.mated import MATED_TURN
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
 from cellctl.processes.antenna_module.settings import ReferenceSection
+
+_DRAWN_OTHERWISE = {
+    "is mirrored in x": (-1.0, 1.0),
+    "has its rows exchanged": (1.0, -1.0),
+    "is turned by half a turn": (-1.0, -1.0),
+}
+"""What somebody draws who looks at the other face, or holds the part the other way."""
+_WIDEST = 1.8
+"""Bore of a hole over its pin: springs bridge some tenths; twice as much is a radius for one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,20 +51,31 @@ def read_drawings(recipe: AntennaRecipe, folder: Path) -> Drawings:
 
 
 def _require_fit(plug: Connector, socket: Connector) -> None:
-    """Distances between contacts of the same names are equal, seen from either side."""
+    """Every contact of the plug lies on that of its name in the socket, and its pin goes in."""
     order = [socket.contacts.index(name) for name in plug.contacts]
-    wanted, found = _distances(plug.positions_m), _distances(socket.positions_m[order])
-    apart_m = float(np.abs(wanted - found).max())
-    if apart_m > socket.capture_m:
+    mated_m = socket.positions_m[order] @ MATED_TURN.rotation.as_matrix()[:2, :2]
+    off_m = _farthest_m(plug.positions_m - mated_m)
+    if off_m > socket.capture_m:
+        names = f"contacts of plug {plug.name} and socket {socket.name} do not fit each other"
+        for what, change in _DRAWN_OTHERWISE.items():
+            if _farthest_m(plug.positions_m * change - mated_m) <= socket.capture_m:
+                raise ConnectorFileInvalid(
+                    f"{names}: one of the drawings {what}; each is drawn as seen on its own mating "
+                    "face, so that contacts of one name have the same y and the other sign of x"
+                )
         raise ConnectorFileInvalid(
-            f"contacts of {plug.name} and {socket.name} do not fit each other: two of them are "
-            f"{apart_m / MM:.2f} mm farther apart in one than in the other"
+            f"{names}: plugged in, two of one name are {off_m / MM:.2f} mm apart"
+        )
+    if not plug.diameter_m < socket.diameter_m < _WIDEST * plug.diameter_m:
+        raise ConnectorFileInvalid(
+            f"pins of {plug.diameter_m / MM:g} mm (plug {plug.name}) for holes of "
+            f"{socket.diameter_m / MM:g} mm (socket {socket.name}): holes are wider than their "
+            f"pins and less than {_WIDEST:g} times as wide; or one is a radius"
         )
 
 
-def _distances(positions_m: Array) -> Array:
-    apart_m: Array = np.linalg.norm(positions_m[:, None] - positions_m[None], axis=2)
-    return apart_m
+def _farthest_m(off_m: Array) -> float:
+    return float(np.linalg.norm(off_m, axis=1).max())
 
 
 @dataclass(frozen=True, slots=True, eq=False)
