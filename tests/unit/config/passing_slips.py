@@ -91,7 +91,6 @@ FIGURES = (
         (
             "recipes.base_T_hole.uncertainty_mm /10",
             "recipes.base_T_hole.height_uncertainty_mm /10",
-            "recipes.base_T_hole.datum_depth_mm /10",
         ),
     ),
     Kind(

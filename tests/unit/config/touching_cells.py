@@ -82,9 +82,42 @@ def _places() -> Iterator[Mistake]:
     yield Mistake(_ANTENNA, tray, metres, "recipes.0.base_T_tray_plug.pose", "metres")
 
 
-TOUCHING_CELLS = (*_sensors(), *_places())
+def _figures() -> Iterator[Mistake]:
+    """Figures of an insertion by touch."""
+    forces, place = "recipes.0.forces", "recipes.0.base_T_hole"
+    yield Mistake(
+        _INSERTION, "search_n = 10.0", "search_n = 80.0", f"{forces}.search_n", "half of insertion"
+    )
+    for depth in ("0.0", "0.012", "1.2"):
+        yield Mistake(
+            _INSERTION,
+            "datum_depth_mm = 12.0",
+            f"datum_depth_mm = {depth}",
+            f"{place}.datum_depth_mm",
+            "stands proud of that",
+        )
+    yield Mistake(
+        _INSERTION,
+        "window_deg = 1.0,",
+        "window_deg = 0.01745,",
+        "recipes.0.fit.keys.window_deg",
+        "or is it in radians?",
+    )
+
+
+TOUCHING_CELLS = (*_sensors(), *_places(), *_figures())
 
 MEANT_PERHAPS = (
+    Undecided(
+        Mistake(
+            _INSERTION,
+            "keys = { depth_mm = 3.0, window_deg = 1.0, uncertainty_deg = 1.8 }",
+            "",
+            "recipes.0.fit.keys",
+            "seldom is round all over",
+        ),
+        "a raised plug without keys: it may have none",
+    ),
     Undecided(
         Mistake(
             _ANTENNA,

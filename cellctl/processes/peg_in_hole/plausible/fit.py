@@ -1,6 +1,7 @@
 """Holds the drawing of a peg and its hole against itself."""
 
 from collections.abc import Iterator
+from math import degrees
 
 from cellctl.config.checks.bound import Bound
 from cellctl.geometry.pose import MM
@@ -9,6 +10,8 @@ from cellctl.processes.peg_in_hole.recipe import Fit, PegRecipe
 
 LEAST_FRICTION = 0.05
 """Of a dry pair; polytetrafluoroethylene on steel, the most slippery one in use, has about 0.04."""
+_LEAST_KEY_PLAY_MM = 0.01
+"""To either side of a key: half the width of the closest fit in which one slides (H7/g6)."""
 _PLACES_SHARE = 0.8
 """Of the radius that holds 99 of 100 places, the one that holds 95: 2.45 over 3.03 standard
 deviations of two equal axes."""
@@ -34,7 +37,14 @@ def fit_bounds(recipe: PegRecipe, key: str) -> Iterator[Bound]:
         )
         name = f"{where}.keys.depth_mm"
         yield Bound(name, fit.keys.depth_mm, why, least=entry_mm, most=fit.depth_mm)
+        why = (
+            f"keys at {fit.peg_radius_mm:g} mm with {_LEAST_KEY_PLAY_MM:g} mm of play to either "
+            "side; no key slides with less, or is it in radians?"
+        )
+        least_deg = degrees(_LEAST_KEY_PLAY_MM / fit.peg_radius_mm)
+        yield Bound(f"{where}.keys.window_deg", fit.keys.window_deg, why, least=least_deg)
     yield _touches(recipe, key)
+    yield from _proud(recipe, key)
 
 
 def _touches(recipe: PegRecipe, key: str) -> Bound:
@@ -49,6 +59,21 @@ def _touches(recipe: PegRecipe, key: str) -> Bound:
     )
     least_mm = edge_mm + fit.peg_radius_mm - fit.peg_chamfer_mm + off_mm
     return Bound(f"{key}.base_T_hole.face_radius_mm", place.face_radius_mm, why, least=least_mm)
+
+
+def _proud(recipe: PegRecipe, key: str) -> Iterator[Bound]:
+    """A raised plug is told from the panel that is touched round it by how far it stands proud."""
+    fit, place = recipe.fit, recipe.base_T_hole
+    nearest_mm = place.face_radius_mm - fit.peg_radius_mm
+    if fit.outer_radius_mm is None or nearest_mm < fit.outer_radius_mm:
+        return
+    why = (
+        f"the part touches {nearest_mm:g} mm from the middle and farther out, beside the raised "
+        f"plug (outer_radius_mm = {fit.outer_radius_mm:g}), which stands proud of that by more "
+        "than its height is uncertain"
+    )
+    least_mm = place.height_uncertainty_mm
+    yield Bound(f"{key}.base_T_hole.datum_depth_mm", place.datum_depth_mm, why, least=least_mm)
 
 
 def _edge_mm(fit: Fit, *, datum: bool) -> float:

@@ -36,6 +36,8 @@ def _contact(recipe: PegRecipe, settings: PegSettings, where: str) -> Iterator[B
     least_n = max(_PUSHED_WITH_N, _SIGMAS * settings.force_sigma_n)
     why = f"what a peg is pressed with while it is pushed aside, and {_SIGMAS:g} force_sigma_n"
     yield Bound(f"{where}.search_n", forces.search_n, why, least=least_n)
+    why = "half of insertion_n: a search that presses like the insertion cannot be told from it"
+    yield Bound(f"{where}.search_n", forces.search_n, why, most=forces.insertion_n / 2.0)
     why = f"{_MOST_OVER_INSERTION:g} times insertion_n, where a good insertion ends"
     most_n = _MOST_OVER_INSERTION * forces.insertion_n
     yield Bound(f"{where}.fault_n", forces.fault_n, why, most=most_n)

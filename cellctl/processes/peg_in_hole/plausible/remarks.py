@@ -37,6 +37,12 @@ def recipe_remarks(
             f"arrives within uncertainty_deg = {fit.keys.uncertainty_deg:g}; right if it is so"
         )
         yield ConfigIssue(f"{key}.fit.keys.window_deg", f"{fit.keys.window_deg:g}", said)
+    if fit.keys is None and fit.outer_radius_mm is not None:
+        said = (
+            "a raised plug seldom is round all over: keys that are left out are met as a stop, and "
+            "the part is never turned; right if it has none"
+        )
+        yield ConfigIssue(f"{key}.fit.keys", "(missing)", said)
     if recipe.seat.grip_n is None:
         said = "nothing is called inserted without it: measure at which force the part slips"
         yield ConfigIssue(f"{key}.seat.grip_n", "(missing)", said)
