@@ -4,6 +4,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.console import Console
 
 from cellctl.cli.records.run_store import DataDir, opened_store
 
@@ -25,5 +26,10 @@ def report(
     path = out or Path(f"run-{run}.{'pdf' if pdf else 'html'}")
     with opened_store(data_dir) as store:
         pages = pages_of(store.run(run).head.process)
-        write_report(store, run, path, pages=pages, pdf=pdf)
+        with Console(stderr=True).status("drawing the report") as status:
+
+            def tell(step: str) -> None:
+                status.update(f"PDF: {step}")
+
+            write_report(store, run, path, pages=pages, pdf=pdf, tell=tell)
     typer.echo(path)

@@ -2,7 +2,7 @@
 
 import base64
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path, PurePosixPath
@@ -60,15 +60,22 @@ def export_run(
 
 
 def write_report(
-    store: RunStore, number: int, path: Path, *, pages: ReportBuilder = no_pages, pdf: bool = False
+    store: RunStore,
+    number: int,
+    path: Path,
+    *,
+    pages: ReportBuilder = no_pages,
+    pdf: bool = False,
+    tell: Callable[[str], None] = lambda _: None,
 ) -> None:
     """Write the report of a run as one file, HTML or PDF, with its pictures inside.
 
+    ``tell`` hears how far a PDF is.
     Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten`` and ``PdfNotMade``.
     """
     record = store.run(number)
     page = render(_view(store, record, pages, _inside(store, record)))
-    _write(path, to_pdf(page) if pdf else page.encode())
+    _write(path, to_pdf(page, tell) if pdf else page.encode())
 
 
 def _inside(store: RunStore, record: RunRecord) -> dict[str, str]:

@@ -1,5 +1,6 @@
 """The PDF says what the HTML says, and needs nothing from outside."""
 
+import logging
 import re
 import sys
 from collections.abc import Iterator
@@ -86,6 +87,15 @@ def test_every_figure_of_the_page_is_in_the_pdf(recorded: Recorded, tmp_path: Pa
     assert [word for word in sorted(words) if word.lower() not in squeezed.lower()] == []
     with_pictures = [one for one in PdfReader(recorded.pdf).pages if one.images]
     assert with_pictures
+
+
+@drawn
+def test_it_says_how_far_it_is(recorded: Recorded, tmp_path: Path) -> None:
+    said: list[str] = []
+    path = tmp_path / "report.pdf"
+    write_report(recorded.store, recorded.run, path, pages=pages, pdf=True, tell=said.append)
+    assert any("layout - Page 1" in step for step in said), said
+    assert logging.getLogger("weasyprint.progress").handlers == []
 
 
 @drawn
