@@ -40,7 +40,8 @@ class FtHealth:
     resynchronised_bytes: int = 0
     """Bytes thrown away while looking for a frame."""
     invalid: int = 0
-    """Frames with a good check whose values are not finite numbers; they are not samples."""
+    """Frames with a good check that are no new samples: their values are not finite numbers, or
+    they have the number of the frame before."""
     saturated: int = 0
     reconnects: int = 0
     rate_deviations: int = 0

@@ -101,7 +101,7 @@ def _bad(health: FtHealth) -> tuple[str, ...]:
     counts = {
         "lost samples": health.lost,
         "wrong checksums": health.checksum_errors,
-        "samples that are no numbers": health.invalid,
+        "frames that are no new numbers": health.invalid,
         "samples beyond the range": health.saturated,
     }
     return tuple(f"{count} {what}" for what, count in counts.items() if count)

@@ -106,7 +106,7 @@ class WrenchMonitor:
             detail = (
                 f"{armed.limits.bad_frames} damaged frames within "
                 f"{armed.limits.bad_frames_window_s * 1e3:.0f} ms ({health.checksum_errors} wrong "
-                f"checks, {health.invalid} without finite values since the start)"
+                f"checks, {health.invalid} without new finite values since the start)"
             )
             self.stop(TripReason.SENSOR_INVALID, now_s, detail, value=float(bad))
 

@@ -39,6 +39,12 @@ class Sampler:
         # earlier.
         behind = len(frames) * self._points
         for frame in frames:
+            if frame.number == self._last:
+                # The box sends its last frame again: taken for a new sample, a force of before
+                # would look like one of now.
+                self.invalid += 1
+                behind -= self._points
+                continue
             gap = self._gap(frame.number)
             self.lost += gap * self._points
             periods = gap * self._points + 1

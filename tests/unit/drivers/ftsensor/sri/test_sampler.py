@@ -31,6 +31,15 @@ def test_a_step_back_is_a_new_count() -> None:
     assert taker.lost == 0
 
 
+def test_a_frame_that_comes_again_is_no_new_sample() -> None:
+    taker = sampler()
+    one = Frame(7, (POINT,))
+    assert len(taker.take([one], 0.0)) == 1
+    assert taker.take([one, one], 0.002) == []
+    assert (taker.samples, taker.invalid, taker.lost) == (1, 2, 0)
+    assert len(taker.take([Frame(8, (POINT,))], 0.003)) == 1
+
+
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
 def test_what_is_not_finite_is_no_sample(bad: float) -> None:
     taker = sampler()
