@@ -13,6 +13,9 @@ _ROUNDING = 1e-3
 """Largest element of R Rᵀ − I of a matrix in a file: files are often rounded to three or four
 digits. The nearest rotation is taken then."""
 _NOT_A_POSE = "a pose is a 4 x 4 matrix in mm or six numbers X, Y, Z, A, B, C"
+_LEAST_EIGENVALUE = -0.01
+"""Of a covariance whose variances are scaled to 1: with numbers rounded to three digits, as files
+often have them, one that is 0 comes out as some thousandths on either side."""
 _WRITTEN_UNITS = np.array([MM] * 3 + [np.pi / 180] * 3)
 
 
@@ -44,8 +47,27 @@ def covariance_to_written(covariance: Array) -> Array:
 
 
 def covariance_from_written(covariance: Array) -> Array:
-    """From mm, degrees to m, rad."""
-    return covariance * np.outer(_WRITTEN_UNITS, _WRITTEN_UNITS)
+    """From mm, degrees to m, rad; raises ``ValueError`` for what no errors can have."""
+    return require_covariance(covariance * np.outer(_WRITTEN_UNITS, _WRITTEN_UNITS))
+
+
+def require_covariance(covariance: Array) -> Array:
+    """The covariance of a pose, shape (6, 6); raises ``ValueError`` for a matrix that is none.
+
+    One with a negative variance in some direction would make a pose more certain by every other
+    pose that it is joined to.
+    """
+    variances = np.diag(covariance)
+    if (variances < 0.0).any():
+        raise ValueError("a covariance has no negative variances")
+    # Lengths and angles differ by orders of magnitude; what has no variance has no unit either.
+    scale = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    scaled = covariance / np.outer(scale, scale)
+    if np.abs(scaled - scaled.T).max() > -_LEAST_EIGENVALUE:
+        raise ValueError("a covariance is symmetric")
+    if np.linalg.eigvalsh(scaled).min() < _LEAST_EIGENVALUE:
+        raise ValueError("a covariance is positive semidefinite: no direction has less than none")
+    return covariance
 
 
 def matrix_mm_to_pose(values: Any) -> RigidTransform:

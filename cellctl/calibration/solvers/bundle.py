@@ -115,7 +115,7 @@ def adjust_bundle(problem: BundleProblem[S], start: S, tolerance: float = FINE) 
     freedom = count - len(problem.prior) - 6 * len(residuals)
     sigma_px = float(np.sqrt(squares / max(freedom, 1)))
     # Once more without damping and with the final noise.
-    information, pulls = _by_view(_normal_equations(problem, state, sigma_px))
+    information, pulls = _by_view(_normal_equations(problem, state, sigma_px), problem.name)
     weighed = weigh_views(problem.prior, information, pulls, problem.name)
     return BundleResult(state, residuals, sigma_px, weighed.covariance, weighed.shift_sigmas)
 
@@ -160,7 +160,8 @@ def _minimise(
     normal = _normal_equations(problem, state, sigma_px)
     for _ in range(_MAX_STEPS):
         if poses_only:
-            shared, views = np.zeros(len(problem.prior)), _own_step(normal, damping)
+            views = _own_step(normal, damping, problem.name)
+            shared = np.zeros(len(problem.prior))
         else:
             shared, views = _step(normal, damping, problem.name)
         candidate = problem.moved(state, shared, views)
@@ -205,35 +206,42 @@ def _normal_equations(problem: BundleProblem[S], state: S, sigma_px: float) -> _
 
 def _step(normal: _Normal, damping: float, name: str) -> tuple[Array, Array]:
     """Steps of the shared unknowns, shape (s,), and of the poses, shape (views, 6)."""
-    reduced, gradient = _eliminate(normal, damping)
+    reduced, gradient = _eliminate(normal, damping, name)
     delta: Array = cho_solve(_factor(reduced, name), gradient)
     rest = normal.own_gradient - np.einsum("vsk,s->vk", normal.mixed, delta)
-    return delta, _solved(_damped(normal.own, damping), rest)
+    return delta, _solved(_damped(normal.own, damping), rest[:, :, None], name)[:, :, 0]
 
 
-def _own_step(normal: _Normal, damping: float) -> Array:
+def _own_step(normal: _Normal, damping: float, name: str) -> Array:
     """Steps of the poses alone, shape (views, 6)."""
-    return _solved(_damped(normal.own, damping), normal.own_gradient)
+    own = _damped(normal.own, damping)
+    return _solved(own, normal.own_gradient[:, :, None], name)[:, :, 0]
 
 
-def _solved(matrices: Array, sides: Array) -> Array:
-    return np.asarray(np.linalg.solve(matrices, sides[:, :, None])[:, :, 0])
+def _solved(matrices: Array, sides: Array, name: str) -> Array:
+    """Of each view, shape (views, 6, n)."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, sides))
+    except np.linalg.LinAlgError as error:
+        # Corners on one line, for example: the board may be turned about it.
+        text = f"the {name} adjustment is singular: a view does not say how its board lies"
+        raise SolveFailed(text) from error
 
 
-def _eliminate(normal: _Normal, damping: float) -> tuple[Array, Array]:
+def _eliminate(normal: _Normal, damping: float, name: str) -> tuple[Array, Array]:
     """Normal equations of the shared unknowns alone."""
     # The pose of a view occurs in its own images only, so each is eliminated by itself and the
     # cost grows linearly with the number of views.
-    solved = np.linalg.solve(_damped(normal.own, damping), normal.mixed.transpose(0, 2, 1))
+    solved = _solved(_damped(normal.own, damping), normal.mixed.transpose(0, 2, 1), name)
     shared = np.diag(normal.prior) + normal.shared.sum(axis=0)
     reduced = _damped(shared, damping) - np.einsum("vsk,vkt->st", normal.mixed, solved)
     gradient = normal.prior_gradient + normal.shared_gradient.sum(axis=0)
     return reduced, gradient - np.einsum("vks,vk->s", solved, normal.own_gradient)
 
 
-def _by_view(normal: _Normal) -> tuple[Array, Array]:
+def _by_view(normal: _Normal, name: str) -> tuple[Array, Array]:
     """What each view says of the shared unknowns: information (v, s, s) and pull (v, s)."""
-    solved = np.linalg.solve(normal.own, normal.mixed.transpose(0, 2, 1))
+    solved = _solved(normal.own, normal.mixed.transpose(0, 2, 1), name)
     information = normal.shared - np.einsum("vsk,vkt->vst", normal.mixed, solved)
     pulls = normal.shared_gradient - np.einsum("vks,vk->vs", solved, normal.own_gradient)
     return information, pulls

@@ -41,13 +41,15 @@ def pose_in_frame(time_ns: int, frame: str, xyz_abc_mm_deg: Numbers) -> PoseInFr
 def reported_transforms(
     reports: Sequence[RawMessage], parent: str, child: str
 ) -> Iterator[TimedMessage]:
-    """``parent_T_child`` at each report of a robot."""
-    values = [json.loads(report.data) for report in reports]
-    table = np.array([[one[name] for name in WRITTEN] for one in values], float).reshape(-1, 6)
+    """``parent_T_child`` at each report of a robot that has all six numbers."""
+    read = ((report.time_ns, json.loads(report.data)) for report in reports)
+    rows = [(time_ns, [values[name] for name in WRITTEN]) for time_ns, values in read]
+    known = [(time_ns, row) for time_ns, row in rows if None not in row]
+    table = np.array([row for _, row in known], float).reshape(-1, 6)
     # All at once: the library takes a millisecond for each call, and a run has thousands.
     rotations = Rotation.from_euler("ZYX", table[:, 3:], degrees=True).as_quat()
-    for report, place, quaternion in zip(reports, table[:, :3] * MM, rotations, strict=True):
-        yield _transform(report.time_ns, parent, child, place, quaternion)
+    for (time_ns, _), place, quaternion in zip(known, table[:, :3] * MM, rotations, strict=True):
+        yield _transform(time_ns, parent, child, place, quaternion)
 
 
 def _transform(
@@ -123,11 +125,11 @@ def _nearest(reports: list[RawMessage], time_ns: int) -> Mapping[str, Any]:
 
 
 def _same(report: Mapping[str, Any], recorded: Numbers) -> bool:
-    apart = [
-        abs(report[name] - (value or 0.0))
-        for name, value in zip(WRITTEN[:3], recorded, strict=False)
-    ]
-    return bool(max(apart) < _SAME_POSE_MM)
+    """Whether a robot has reported this place; False where either does not say it."""
+    pairs = [(report[name], value) for name, value in zip(WRITTEN[:3], recorded, strict=False)]
+    return all(
+        None not in (one, other) and abs(one - other) < _SAME_POSE_MM for one, other in pairs
+    )
 
 
 def _components(place_m: Array, quaternion: Array) -> tuple[Vector3, Quaternion]:

@@ -44,6 +44,11 @@ def _joints(values: Any) -> Array:
     return numbers(values, (6,), "joints_deg must be six numbers")
 
 
+Sigma = Annotated[float, Field(ge=1e-6, le=100.0)]
+"""A standard deviation. Everything is weighed by its inverse: with none at all the one pose that is
+said to be exact would decide alone, and no division holds."""
+
+
 class HandEyeCamera(InputFile):
     """The camera that saw the corners."""
 
@@ -81,12 +86,12 @@ class HandEyeFile(InputFile):
     camera_id: str | None = None
     """Identity of the intrinsics in use; it stands in the result, too."""
     poses: tuple[HandEyeEntry, ...]
-    robot_sigma_mm: float = 0.05
-    robot_sigma_deg: float = 0.005
-    camera_sigma_mm: float = 0.02
+    robot_sigma_mm: Sigma = 0.05
+    robot_sigma_deg: Sigma = 0.005
+    camera_sigma_mm: Sigma = 0.02
     """Standard deviation of poses of the board that have no covariance."""
-    camera_sigma_deg: float = 0.005
-    camera_sigma_px: float | None = None
+    camera_sigma_deg: Sigma = 0.005
+    camera_sigma_px: Sigma | None = None
     """Noise of corners; without it the noise that their residuals show."""
     camera: HandEyeCamera | None = None
     board_points_mm: InputPoints | None = None

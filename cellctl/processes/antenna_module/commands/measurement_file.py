@@ -7,6 +7,7 @@ from pydantic import Field, PlainValidator, model_validator
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.input_file import InputFile, InputPose, numbers
+from cellctl.calibration.pose_record import require_covariance
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.vision.result_file import COVARIANCE_ORDER, COVARIANCE_UNITS
@@ -14,7 +15,7 @@ from cellctl.processes.antenna_module.vision.result_file import COVARIANCE_ORDER
 
 def _covariance(values: Any) -> Array:
     written = numbers(values, (6, 6), "a covariance must be 6 x 6")
-    return np.asarray(written * np.outer(COVARIANCE_UNITS, COVARIANCE_UNITS))
+    return require_covariance(written * np.outer(COVARIANCE_UNITS, COVARIANCE_UNITS))
 
 
 Covariance = Annotated[Array, PlainValidator(_covariance)]

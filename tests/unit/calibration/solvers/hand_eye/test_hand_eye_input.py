@@ -43,3 +43,10 @@ def test_two_poses_of_one_name_are_refused() -> None:
     called_by_number = [{**named[0], "name": "pose 2"}, {**named[0], "name": None}]
     with pytest.raises(ValueError, match="'pose 2' is given to 2"):
         HandEyeFile.model_validate({"poses": called_by_number})
+
+
+@pytest.mark.parametrize("key", ["robot_sigma_mm", "robot_sigma_deg", "camera_sigma_px"])
+@pytest.mark.parametrize("sigma", [0.0, -0.05])
+def test_nothing_that_is_measured_has_no_uncertainty(key: str, sigma: float) -> None:
+    with pytest.raises(ValueError, match=key):
+        file(None, None, **{key: sigma})
