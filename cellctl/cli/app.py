@@ -2,9 +2,8 @@
 
 import sys
 
-from rich.console import Console
-
 from cellctl.cli.commands import whole_app
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.root import settings
 from cellctl.errors import CellError
 
@@ -18,8 +17,8 @@ def main() -> None:
         # on request.
         if settings["debug"]:
             raise
-        console = Console(stderr=True, soft_wrap=True, highlight=False)
-        console.print(str(error), style="bold red", markup=False)
-        console.print(f"  cause:  {error.cause}", markup=False)
-        console.print(f"  remedy: {error.remedy}", markup=False)
+        console = console_of_lines(stderr=True)
+        console.print(str(error), style="bold red")
+        console.print(f"  cause:  {error.cause}")
+        console.print(f"  remedy: {error.remedy}")
         sys.exit(1)

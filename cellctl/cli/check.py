@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 
 from cellctl.atomic_files import may_write
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig
@@ -61,7 +62,7 @@ def check(
     found = [*examined.errors, *_left_open(cell_file)]
     remarks = [] if found else examined.remarks
     cell = None if found else examined.cell
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     if not as_json:
         _show_findings(console, cell_file, found)
         if cell is not None:
@@ -91,9 +92,9 @@ def _bad_moves(console: Console, cell_file: Path, *, quiet: bool) -> Iterator[st
         good = False
         yield text
         if not quiet:
-            console.print(text, markup=False)
+            console.print(text)
     if good and not quiet:
-        console.print("  every move is free, by the model", markup=False)
+        console.print("  every move is free, by the model")
 
 
 def _asked(cell: CellConfig, cell_file: Path, socket: Path | None) -> "list[Answer]":
@@ -129,14 +130,14 @@ def _show_findings(console: Console, cell_file: Path, found: Sequence[ConfigIssu
     if not found:
         return
     errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
-    console.print(f"{cell_file}: {errors}", style="bold red", markup=False)
+    console.print(f"{cell_file}: {errors}", style="bold red")
     for problem in found:
-        console.print(f"F{problem.number} {_where(problem)}", markup=False)
-        console.print(f"     {problem.allowed}", markup=False)
+        console.print(f"F{problem.number} {_where(problem)}")
+        console.print(f"     {problem.allowed}")
         if problem.against:
-            console.print(f"     {_UNDECIDED}", markup=False)
+            console.print(f"     {_UNDECIDED}")
         for other in problem.against:
-            console.print(f"       {other}", markup=False)
+            console.print(f"       {other}")
 
 
 def _where(issue: ConfigIssue) -> str:
@@ -147,27 +148,27 @@ def _where(issue: ConfigIssue) -> str:
 def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Examination) -> None:
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
-        console.print(f"  {key:32} {device.driver}", markup=False)
+        console.print(f"  {key:32} {device.driver}")
     _say_what_is_not_checked(console, cell)
     _say_what_zones_hold(console, cell)
     _say_what_boxes_leave(console, cell, examined.needs)
     _say_how_sensors_lie(console, cell)
-    console.print(f"  {'poses':32} {_POSES}", markup=False)
+    console.print(f"  {'poses':32} {_POSES}")
     model = model_path(cell_file)
     if model.exists():
         text = f"`cellctl check --moves {cell_file}` holds every move against it"
-        console.print(f"  {f'model {model.name}':32} {text}", markup=False)
+        console.print(f"  {f'model {model.name}':32} {text}")
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
-        console.print(f"  recipe {recipe.id:<25} {text}", markup=False)
+        console.print(f"  recipe {recipe.id:<25} {text}")
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
     if examined.remarks:
         # Last, where they are read.
         console.print("Look at these again; each may be meant as it stands:", style="yellow")
     for remark in examined.remarks:
-        console.print(f"  {_where(remark)}", style="yellow", markup=False)
-        console.print(f"     {remark.allowed}", style="yellow", markup=False)
+        console.print(f"  {_where(remark)}", style="yellow")
+        console.print(f"     {remark.allowed}", style="yellow")
 
 
 def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
@@ -188,7 +189,6 @@ def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:
                 f"  robots.{name}: joint moves are not checked against its workspace (the driver's "
                 "settings say nothing of its kinematics)",
                 style="yellow",
-                markup=False,
             )
 
 
@@ -200,8 +200,8 @@ def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
             for robot, share in zone.robots.items()
         ]
         order = ", then ".join(zone.retreat) or "nobody while another one is in it"
-        console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}", markup=False)
-        console.print(f"  {'':32} leaves first: {order}", markup=False)
+        console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}")
+        console.print(f"  {'':32} leaves first: {order}")
 
 
 def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[ArmNeeds]) -> None:
@@ -214,19 +214,19 @@ def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[Ar
             )
             name = f"robots.{of_arm.name} {room.key.rsplit('.', 1)[-1]}"
             text = f"leaves beyond taught poses and stated moves: {left} mm"
-            console.print(f"  {name:32} {text}", markup=False)
+            console.print(f"  {name:32} {text}")
 
 
 def _say_how_sensors_lie(console: Console, cell: CellConfig) -> None:
     for name, sensor in cell.force_sensors.items():
-        console.print(f"  {f'force_sensors.{name}':32} {how_it_lies(sensor)}", markup=False)
+        console.print(f"  {f'force_sensors.{name}':32} {how_it_lies(sensor)}")
 
 
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:
     """Hints, not errors: whoever checks a file is often neither the user nor on the PC that the
     daemon runs as and on."""
     for hint in _hints_of_this_pc(cell, folder):
-        console.print(f"  {hint}", style="yellow", markup=False)
+        console.print(f"  {hint}", style="yellow")
 
 
 def _hints_of_this_pc(cell: CellConfig, folder: Path) -> list[str]:
@@ -275,9 +275,9 @@ def _say_what_others_need(console: Console, cell: CellConfig) -> None:
             if lacks
             else "no recipe; has its devices"
         )
-        console.print(f"  process {name:<24} {text}", markup=False)
+        console.print(f"  process {name:<24} {text}")
         for allowed, same in _by_text(lacks).items():
-            console.print(f"     {', '.join(same)}: {allowed}", markup=False)
+            console.print(f"     {', '.join(same)}: {allowed}")
 
 
 def _by_text(issues: Iterable[ConfigIssue]) -> dict[str, list[str]]:

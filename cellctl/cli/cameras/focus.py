@@ -11,7 +11,6 @@ from typing import Annotated
 
 import typer
 from pydantic import ValidationError
-from rich.console import Console
 from rich.live import Live
 
 from cellctl.calibration.boards.board import CalibrationBoard
@@ -19,6 +18,7 @@ from cellctl.cell.lighting.auto_exposure import Looked, found_exposure
 from cellctl.cli.cameras.focus_screen import screen
 from cellctl.cli.cameras.focus_view import FocusView, HolesWanted, looked_at
 from cellctl.cli.cameras.opening import CameraName, CellFile, Chosen, HeadName, chosen
+from cellctl.cli.consoles import console_of_tables
 from cellctl.clock import now_s
 from cellctl.config.devices import AutoExposureConfig
 from cellctl.vision.camera.exposure_search import light_round_holes, of_all
@@ -57,7 +57,9 @@ def focus(
         seen = asyncio.run(_one(device, pattern, hole_px, wanted))
         typer.echo(json.dumps(asdict(seen), indent=2))
     elif once:
-        Console().print(screen(device.name, asyncio.run(_one(device, pattern, hole_px, wanted))))
+        console_of_tables().print(
+            screen(device.name, asyncio.run(_one(device, pattern, hole_px, wanted)))
+        )
     else:
         # Ctrl-C is how this command ends; the camera is let go on the way out.
         with suppress(KeyboardInterrupt):

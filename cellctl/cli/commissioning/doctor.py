@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.doctor.diagnosis import Subject, diagnose
 from cellctl.doctor.finding import Finding, Health
@@ -39,9 +40,9 @@ def doctor(
 
 
 def _print(subjects: list[Subject]) -> None:
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     for subject in subjects:
-        console.print(subject.title, style="bold", markup=False)
+        console.print(subject.title, style="bold")
         for finding in subject.findings:
             _print_finding(console, finding)
     counts = [
@@ -53,6 +54,6 @@ def _print(subjects: list[Subject]) -> None:
 
 def _print_finding(console: Console, finding: Finding) -> None:
     mark, style = _MARKS[finding.health]
-    console.print(f"  {mark} {finding.subject}: {finding.found}", style=style, markup=False)
+    console.print(f"  {mark} {finding.subject}: {finding.found}", style=style)
     if finding.remedy:
-        console.print(f"      {finding.remedy}", markup=False)
+        console.print(f"      {finding.remedy}")

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
 from cellctl.cell.robot_reports import listen
 from cellctl.cli.cell_daemon import client_of
 from cellctl.cli.commissioning.one_robot import cell_with, connected
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.config import CellConfig
 from cellctl.config.devices import RobotConfig
@@ -44,13 +44,13 @@ def robot(
     if as_json:
         typer.echo(json.dumps({"source": source, **heard}, indent=2))
         return
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     driver = cell.robots[name].driver
-    console.print(f"{name} by {driver}, {source}: nothing was moved", markup=False)
+    console.print(f"{name} by {driver}, {source}: nothing was moved")
     for part, values in heard.items():
-        console.print(part.replace("_", " "), markup=False)
+        console.print(part.replace("_", " "))
         for key, value in values.items():
-            console.print(f"  {key:24} {_text(value)}", markup=False)
+            console.print(f"  {key:24} {_text(value)}")
 
 
 def _from_daemon(cell: CellConfig, name: str, seconds: float, socket: Path | None) -> Heard | None:

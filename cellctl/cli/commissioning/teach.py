@@ -14,6 +14,7 @@ from cellctl.atomic_files import remove_durably, write_durably
 from cellctl.cell.robot_reports import joints_deg, state_as_json
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.commissioning.one_robot import cell_with, connected
+from cellctl.cli.consoles import console_of_lines
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, problems
 from cellctl.config.document.taught_pose_text import with_pose
@@ -42,7 +43,7 @@ def teach(
     """
     cell = cell_with(cell_file, name)
     require_no_daemon(cell, None)
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     if as_json or not poses:
         compared = asyncio.run(_compared(cell, name))
         if as_json:
@@ -91,7 +92,7 @@ async def _capture(
         console.print(f"{pose}: left as it was")
         return
     write_pose(cell_file, robot.name, pose, joints_deg(state))
-    console.print(f"{pose}: written to {cell_file}", markup=False)
+    console.print(f"{pose}: written to {cell_file}")
 
 
 async def _standing(robot: Robot) -> RobotState | None:
@@ -128,20 +129,20 @@ def write_pose(cell_file: Path, robot: str, pose: str, values_deg: Sequence[floa
 
 def _show(console: Console, state: RobotState, taught: Sequence[float] | None) -> None:
     shown = state_as_json(state)
-    console.print(f"  flange x y z A B C  {_text(shown['flange_xyzabc_mm_deg'])}", markup=False)
-    console.print(f"  joints now          {_text(shown['joints_deg'])}", markup=False)
+    console.print(f"  flange x y z A B C  {_text(shown['flange_xyzabc_mm_deg'])}")
+    console.print(f"  joints now          {_text(shown['joints_deg'])}")
     if taught is None:
         console.print("  the cell file has no such pose yet")
         return
-    console.print(f"  joints in the file  {_text(taught)}", markup=False)
-    console.print(f"  greatest difference {_off_deg(state, taught):.3f} deg", markup=False)
+    console.print(f"  joints in the file  {_text(taught)}")
+    console.print(f"  greatest difference {_off_deg(state, taught):.3f} deg")
 
 
 def _show_comparison(console: Console, name: str, compared: dict[str, Any]) -> None:
     state = compared["state"]
-    console.print(f"{name}: joints {_text(state['joints_deg'])} deg", markup=False)
+    console.print(f"{name}: joints {_text(state['joints_deg'])} deg")
     for pose, one in compared["poses"].items():
-        console.print(f"  {pose:24} {one['off_deg']:9.3f} deg away at most", markup=False)
+        console.print(f"  {pose:24} {one['off_deg']:9.3f} deg away at most")
 
 
 def _off_deg(state: RobotState, values_deg: Sequence[float]) -> float:

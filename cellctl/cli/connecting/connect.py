@@ -5,10 +5,12 @@ from pathlib import Path
 
 from rich.console import Console
 from rich.status import Status
+from rich.text import Text
 
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.connecting.answer import Answer, remedy_here
 from cellctl.cli.connecting.asking import ask_devices
+from cellctl.cli.consoles import console_of_lines
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
 
@@ -26,7 +28,7 @@ def asked(cell: CellConfig, cell_file: Path, socket: Path | None) -> list[Answer
     """
     require_no_daemon(cell, socket)
     waiting: list[str] = []
-    with Console(stderr=True).status("connecting") as status:
+    with console_of_lines(stderr=True).status("connecting") as status:
         return asyncio.run(ask_devices(cell, cell_file.parent, _Waiting(status, waiting)))
 
 
@@ -42,7 +44,7 @@ class _Waiting:
             self._paths.append(path)
         else:
             self._paths.remove(path)
-        self._status.update(f"asking {', '.join(self._paths)}")
+        self._status.update(Text(f"asking {', '.join(self._paths)}"))
 
 
 def show(console: Console, answers: list[Answer]) -> None:
@@ -72,16 +74,16 @@ def _show_one(console: Console, answer: Answer) -> None:
     if not answer.asked:
         says = "not asked, the PLC calls the daemon"
     style = None if answer.good else "bold red"
-    console.print(f"{answer.path} by {answer.driver}: {says}", style=style, markup=False)
+    console.print(f"{answer.path} by {answer.driver}: {says}", style=style)
     for name, text in answer.facts.items():
-        console.print(f"  {name:24} {text}", markup=False)
+        console.print(f"  {name:24} {text}")
     for note in answer.notes:
-        console.print(f"  note: {note}", style="yellow", markup=False)
+        console.print(f"  note: {note}", style="yellow")
     for fault in answer.faults:
         _show_fault(console, fault)
 
 
 def _show_fault(console: Console, fault: CellError) -> None:
-    console.print(f"  {fault}", style="bold red", markup=False)
-    console.print(f"    cause:  {fault.cause}", markup=False)
-    console.print(f"    remedy: {remedy_here(fault)}", markup=False)
+    console.print(f"  {fault}", style="bold red")
+    console.print(f"    cause:  {fault.cause}")
+    console.print(f"    remedy: {remedy_here(fault)}")

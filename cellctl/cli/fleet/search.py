@@ -5,9 +5,10 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.fleet.store_option import PasswordFile, StoreUrl, opened_fleet
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_options import (
@@ -44,7 +45,7 @@ def cells(
     if as_json:
         typer.echo(as_plain([asdict(one) for one in found]))
     elif found:
-        Console().print(_cells(found))
+        console_of_tables().print(_cells(found))
     else:
         typer.echo("no cells; `cellctl fleet add` takes the records of one")
 
@@ -86,7 +87,7 @@ def runs(
         ]
         typer.echo(as_plain(rows))
     elif found:
-        Console().print(_runs(found))
+        console_of_tables().print(_runs(found))
     else:
         typer.echo("no runs")
 
@@ -143,7 +144,7 @@ def _cells(found: Sequence["FleetCell"]) -> Table:
     for one in found:
         received = f"{one.received:%Y-%m-%d %H:%M:%S}" if one.received else "never"
         ahead_s = one.clock_ahead_s or 0.0
-        clock = "" if abs(ahead_s) < CLOCKS_APART_S else f"[red]{ahead_s:+.0f} s[/]"
+        clock = Text("" if abs(ahead_s) < CLOCKS_APART_S else f"{ahead_s:+.0f} s", style="red")
         counts = str(one.head.length), str(one.still_to_come)
         table.add_row(one.name, *counts, received, clock, one.software)
     return table

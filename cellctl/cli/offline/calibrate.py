@@ -32,8 +32,9 @@ from cellctl.calibration.solvers.transfer.transfer_mistakes import (
     require_unmistaken,
 )
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
-from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
+from cellctl.cli.offline.calibration_output import Picture, finish
 from cellctl.cli.offline.heads_of_cell import compare_heads
 from cellctl.cli.offline.invalidate import invalidate
 from cellctl.cli.offline.seal_calibrations import seal
@@ -71,11 +72,11 @@ def hand_eye(
         calibrate_hand_eye(data.stops(), chosen, noise=data.robot_noise()),
         camera_id=data.camera_id,
     )
-    console = console_of_figures()
+    console = console_of_lines()
     for name, (distance_m, angle_rad) in result.residuals.items():
         mark = "  LEFT OUT" if name in result.rejected else ""
         residual = f"{distance_m / MM:.3f} mm, {np.degrees(angle_rad):.4f}°"
-        console.print(f"  {name}: {residual}{mark}", markup=False)
+        console.print(f"  {name}: {residual}{mark}")
     in_hand = chosen is Setup.EYE_IN_HAND
     _show("flange_T_camera" if in_hand else "base_T_camera", result.camera)
     _show("base_T_board" if in_hand else "flange_T_board", result.board)
@@ -108,11 +109,10 @@ def base_frame(
     if cell is not None:
         _compare_with_cell(file, cell, arm)
     else:
-        console_of_figures().print(
+        console_of_lines().print(
             f"note: nothing here has checked d1_mm = {arm.d1_m / MM:g}; a wrong one moves the base "
             "along A1 by as much. Compare it with the data sheet, and give --cell",
             style="yellow",
-            markup=False,
         )
     finish(result, warnings, out, picture, lambda: base_frame_picture(result))
 
@@ -155,11 +155,10 @@ def transfer(
     if missing is not None:
         if (failed := inverted_base(places, if_inverted)) is not None:
             result = replace(result, checks=(*result.checks, failed))
-        console_of_figures().print(
+        console_of_lines().print(
             "note: nothing here has checked which head is which, nor beyond doubt that c_T_base is "
             f"not its inverse, base_T_c: {missing}",
             style="yellow",
-            markup=False,
         )
     finish(result, result.warnings, out, picture, lambda: transfer_picture(result))
 
@@ -180,8 +179,7 @@ def _show(name: str, pose: UncertainPose) -> None:
     sigma = pose.sigma
     # Nothing that was measured is exact: no uncertainty means that the input has not said it.
     turn = f"{np.degrees(sigma[3:].max()):.5f}°" if sigma[3:].any() else "angles not measured"
-    console_of_figures().print(
+    console_of_lines().print(
         f"{name}: X {x:.4f}, Y {y:.4f}, Z {z:.4f} mm, A {a:.5f}, B {b:.5f}, C {c:.5f}°; "
         f"sigma {sigma[:3].max() / MM:.4f} mm, {turn}",
-        markup=False,
     )

@@ -30,6 +30,7 @@ from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.offline.board_options import (
     Asymmetric,
     BoardSize,
@@ -41,7 +42,7 @@ from cellctl.cli.offline.board_options import (
     board_of,
     read_known_board,
 )
-from cellctl.cli.offline.calibration_output import Picture, console_of_figures, finish
+from cellctl.cli.offline.calibration_output import Picture, finish
 from cellctl.cli.offline.measure import read_image
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM
@@ -90,7 +91,7 @@ def stereo(
     pattern = board_of(board, square_mm, charuco, marker_mm, circle_mm, asymmetric=asymmetric)
     earlier = None if known_board is None else read_known_board(known_board)
     found = detect_views(_pairs(left, right), pattern)
-    console = console_of_figures()
+    console = console_of_lines()
     _say_left_out(console, found.not_found)
     known = KnownGeometry(_metres(baseline_mm), _metres(distance_mm), focal_px)
     limits = StereoLimits(known=known)
@@ -108,10 +109,10 @@ def stereo(
         )
 
     result = _chosen(calibrated, lambda one: one.held_out_m, board_shape, lens)
-    console.print(result.method, markup=False)
+    console.print(result.method)
     for view in result.views:
         rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
-        console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}", markup=False)
+        console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}")
     baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
     console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
     unchecked = f"nothing tells whether squares of {square_mm:g} mm are right: give "
@@ -142,7 +143,7 @@ def camera(
     _require_one_camera(paths)
     named = [BoardImage(path.stem, read_image(path)) for path in paths]
     found = detect_camera_views(named, pattern)
-    console = console_of_figures()
+    console = console_of_lines()
     _say_left_out(console, found.not_found)
 
     @cache
@@ -152,10 +153,10 @@ def camera(
         )
 
     result = _chosen(calibrated, lambda one: one.held_out_px, board_shape, lens)
-    console.print(result.method, markup=False)
+    console.print(result.method)
     for view in result.views:
         weight = _weight(view.shift_sigmas)
-        console.print(f"  {view.name}: {view.rms_px:.3f} px{weight}", markup=False)
+        console.print(f"  {view.name}: {view.rms_px:.3f} px{weight}")
     matrix, sigma = result.camera.model.camera_matrix, result.sigma
     for name, value, one in (
         ("focal length", (matrix[0, 0], matrix[1, 1]), sigma[:2]),
@@ -237,4 +238,4 @@ def _says(path: Path, side: str) -> bool:
 
 def _say_left_out(console: Console, not_found: Sequence[str]) -> None:
     if not_found:
-        console.print(f"board not found, left out: {'; '.join(not_found)}", markup=False)
+        console.print(f"board not found, left out: {'; '.join(not_found)}")

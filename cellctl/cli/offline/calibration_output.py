@@ -6,10 +6,10 @@ from pathlib import Path
 from typing import Annotated, Protocol
 
 import typer
-from rich.console import Console
 
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.output_file import write_file
+from cellctl.cli.consoles import console_of_lines
 
 NOT_PASSED = 3
 """Exit code when a figure of the result is beyond its limit."""
@@ -32,11 +32,6 @@ class CalibrationResult(Protocol):
         """Plain data."""
 
 
-def console_of_figures() -> Console:
-    """One line per figure, however wide: scripts read them, and numbers need no colours."""
-    return Console(soft_wrap=True, highlight=False)
-
-
 def finish(
     result: CalibrationResult,
     warnings: tuple[str, ...],
@@ -45,11 +40,11 @@ def finish(
     draw: Callable[[], bytes],
 ) -> None:
     """Print the checks, write the files, and leave with the verdict as exit code."""
-    console = console_of_figures()
+    console = console_of_lines()
     for check in result.checks:
-        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
+        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
     for warning in warnings:
-        console.print(f"  warning: {warning}", markup=False)
+        console.print(f"  warning: {warning}")
     # Also when it did not pass: the figures show why, and the exit code keeps a script from using
     # it.
     if out is not None:

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.calibration.output_file import write_file
+from cellctl.cli.consoles import console_of_lines
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import PoseRecord, parse_pose_file
@@ -54,7 +55,7 @@ def identify_payload(
     rigid, fit = result.identification.rigid, record.having(PoseRole.FIT)
     lever = lever_check(rigid, fit.base_R_sensor, on_top=load_on_top)
     result = result.also((lever,))
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     hint = unit_hint(result, mass_kg)
     _show(result, console)
     # A result in other units fits as well as a good one: its own tests do not see them.
@@ -62,7 +63,7 @@ def identify_payload(
     _say_what_else(hint or _order_hint(result, record), result, mass_kg, console)
     if not lever.passed:
         words = lever_words(rigid, fit.base_R_sensor)
-        console.print(f"note: {words}", style="yellow", markup=False)
+        console.print(f"note: {words}", style="yellow")
     if out is not None:
         write_file(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
     if picture is not None:
@@ -111,7 +112,7 @@ def _show(result: PayloadResult, console: Console) -> None:
             "procedure 106 accepts no such sensor"
         )
     for check in result.checks:
-        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}", markup=False)
+        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
 
 
 def _say_what_else(
@@ -119,14 +120,14 @@ def _say_what_else(
 ) -> None:
     """What the tests do not find: another unit, another order, a mass that nobody compared."""
     if hint:
-        console.print(f"note: {hint}", style="yellow", markup=False)
+        console.print(f"note: {hint}", style="yellow")
     if mass_kg is None:
         found_kg = result.identification.rigid.mass_kg
         text = (
             f"note: nothing here has checked mass and units: compare {found_kg:.3g} kg with the "
             "drawing, or give it by --mass-kg"
         )
-        console.print(text, style="yellow", markup=False)
+        console.print(text, style="yellow")
 
 
 def _numbers(values: object) -> str:

@@ -3,9 +3,9 @@
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
 from cellctl.api.local_socket.messages import AcknowledgeCommand, made
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 
@@ -17,12 +17,12 @@ def list_alarms(context: typer.Context, socket: SocketOption = None) -> None:
     """List the active alarms with what to do; `acknowledge` takes one off the list."""
     if context.invoked_subcommand is not None:
         return
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     alarms = DaemonClient(socket).status().alarms
     for alarm in alarms:
-        console.print(alarm.text, style="yellow", markup=False)
-        console.print(f"  cause:  {alarm.cause}", markup=False)
-        console.print(f"  remedy: {alarm.remedy}", markup=False)
+        console.print(alarm.text, style="yellow")
+        console.print(f"  cause:  {alarm.cause}")
+        console.print(f"  remedy: {alarm.remedy}")
     if not alarms:
         console.print("no alarms")
 

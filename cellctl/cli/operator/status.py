@@ -4,9 +4,9 @@ import time
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.live import Live
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.operator.status_screen import last_seen, screen
@@ -33,7 +33,7 @@ def status(
     elif watch:
         _follow(client)
     else:
-        Console().print(screen(client.status(), utc_now()))
+        console_of_tables().print(screen(client.status(), utc_now()))
 
 
 def _follow(client: DaemonClient) -> None:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import typer
 from rich.console import Console
 
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 from cellctl.errors.config import NoMovesStated
 
@@ -18,25 +19,25 @@ def check(cell_file: CellFile, model: ModelFile = None) -> None:
     # The libraries of planning may be missing, which opening the scene says.
     from cellctl.planning.ways.check_moves import check_moves
 
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     _say_guesses(console, scene)
     count, bad = 0, 0
     for checked in check_moves(scene):
         count += 1
         if checked.fault is not None:
             bad += 1
-            console.print(str(checked.fault), markup=False)
+            console.print(str(checked.fault))
     if bad:
-        console.print(f"{bad} of {count} moves are not good", style="bold red", markup=False)
+        console.print(f"{bad} of {count} moves are not good", style="bold red")
         raise typer.Exit(1)
     # Nothing checked is not the same as everything free.
     if count == 0:
         raise NoMovesStated(f"{cell_file}")
-    console.print(f"{count} moves are free", markup=False)
+    console.print(f"{count} moves are free")
 
 
 def _say_guesses(console: Console, scene: "CellScene") -> None:
     guesses = [solid.name for solid in scene.solids if solid.stand_in]
     if guesses:
         text = f"stand-ins, not measured: {', '.join(guesses)}"
-        console.print(text, style="yellow", markup=False)
+        console.print(text, style="yellow")

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 
 Out = Annotated[
@@ -34,23 +34,22 @@ def paths(
     from cellctl.planning.ways.plan_ways import plan_ways, with_ways
     from cellctl.planning.ways.write_ways import with_ways_written
 
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     planned = []
     for way in plan_ways(scene, seed=seed, search_s=search_s):
         points = len(way.joints_rad) - 2
         console.print(
             f"{way.robot}: {way.start} to {way.end} and back: {points} points between, "
             f"{way.time_s:.1f} s; narrowest: {way.narrowest}",
-            markup=False,
         )
         planned.append(way)
     faults = [one.fault for one in check_moves(with_ways(scene, planned)) if one.fault]
     for fault in faults:
-        console.print(str(fault), markup=False)
+        console.print(str(fault))
     if out is not None:
         text = cell_file.read_text(encoding="utf-8")
         write_file(out, with_ways_written(text, planned).encode())
-        console.print(f"written: {out}; read it, and try each way at low speed", markup=False)
+        console.print(f"written: {out}; read it, and try each way at low speed")
     if faults:
         console.print(f"{len(faults)} moves are not good all the same", style="bold red")
         raise typer.Exit(1)

@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 from cellctl.errors.config import NoViewsStated
 
@@ -28,16 +28,16 @@ def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) ->
     from cellctl.planning.views.view_text import gain_line, views_lines
     from cellctl.planning.views.write_viewpoints import with_viewpoints_written
 
-    console = Console(soft_wrap=True, highlight=False)
+    console = console_of_lines()
     planned = []
     for measurement in stated_measurements(scene):
         views = ViewpointPlan(scene, measurement).search()
         planned.append(views)
         for line in views_lines(views):
-            console.print(line, markup=False)
-        console.print("with other equipment:", markup=False)
+            console.print(line)
+        console.print("with other equipment:")
         for gain in gains(scene, views.placement):
-            console.print(gain_line(gain), markup=False)
+            console.print(gain_line(gain))
     if not planned:
         raise NoViewsStated(f"{cell_file}")
     if out is not None:

@@ -4,9 +4,9 @@ from dataclasses import asdict
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.records.entries import AuditEntry
@@ -30,7 +30,7 @@ def audit(
         typer.echo(as_plain([asdict(entry) for entry in found]))
     elif found:
         # Details hold whatever people have typed: brackets in it are no mark-up.
-        Console().print(_table(found), markup=False)
+        console_of_tables().print(_table(found))
     else:
         typer.echo(f"no such entries, of {len(log)}")
 

@@ -6,9 +6,9 @@ from datetime import datetime
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.clock import utc_now
@@ -45,7 +45,7 @@ def list_calibrations(*, as_json: AsJson = False, data_dir: DataDir = None) -> N
             one.id[:12],
         )
     # Reasons hold whatever people have typed: brackets in it are no mark-up.
-    Console().print(table, markup=False)
+    console_of_tables().print(table)
 
 
 @app.command()
@@ -66,16 +66,15 @@ def show(
     if as_json:
         _as_json(found)
         return
-    console = Console()
+    console = console_of_tables()
     now = utc_now()
     for one in found:
         by = f", {one.serial_number}" if one.serial_number else ""
         console.print(
             f"{one.made:%Y-%m-%d %H:%M} UTC{by}, {one.software}, id {one.id[:12]}: "
             f"{_verdict(one)}; {_state(one, now)}",
-            markup=False,
         )
-    console.print(_figures(found), markup=False)
+    console.print(_figures(found))
 
 
 def _kept(data_dir: DataDir) -> list[Calibration]:

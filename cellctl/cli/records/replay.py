@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.cli.records.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
@@ -29,7 +29,7 @@ def replay(
     differing = [line for line in lines if not line.identical]
     shown = lines if every else differing
     if shown:
-        Console().print(_table(shown))
+        console_of_tables().print(_table(shown))
     measurements = len({line.measurement for line in lines})
     same = len(lines) - len(differing)
     typer.echo(f"{measurements} measurements, {same} of {len(lines)} numbers are identical")

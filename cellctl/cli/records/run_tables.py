@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence, Set
 from dataclasses import asdict
 
 import typer
-from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.records.entered.gauges import gauge_limits, judge_gauge, part_verdict
 from cellctl.records.entered.notes import note_words, notes_of
@@ -31,25 +32,25 @@ def show_record(record: RunRecord, audit: Sequence[AuditEntry], *, as_json: bool
     if as_json:
         typer.echo(as_plain(asdict(record) | {"notes": [asdict(note) for note in notes]}))
         return
-    console = Console()
+    console = console_of_tables()
     console.print(run_table([record.head], wide=console.width >= WIDE))
     if ended := fault_box(record, during(record, audit)):
         # Also a run that a command has ended: by whom, and in which step.
         where = f"step {ended.step}" if record.phases else ended.step
-        console.print(f"{ended.text}; {where}", style="red", markup=False)
+        console.print(f"{ended.text}; {where}", style="red")
     for loop in dict.fromkeys(entry.loop for entry in record.passes):
         console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
     judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
     if judged:
         console.print(_figures(judged, verdicts(record.newest_figures)))
     for gauge in record.gauge_history:
-        console.print(gauge_line(record, gauge, entered), markup=False)
+        console.print(gauge_line(record, gauge, entered))
     if part_verdict(record) != record.head.result:
         console.print("the part is bad: a plug gauge is beyond its limit", style="bold red")
     for alarm in record.alarms:
-        console.print(f"alarm {alarm.text}", markup=False)
+        console.print(f"alarm {alarm.text}")
     for entry in notes:
-        console.print(f"note of {said_by(entry)}: {note_words(entry)}", markup=False)
+        console.print(f"note of {said_by(entry)}: {note_words(entry)}")
 
 
 def gauge_line(record: RunRecord, entry: Gauge, entered: Sequence[AuditEntry]) -> str:
@@ -80,10 +81,9 @@ def run_table(
     return table
 
 
-def run_row(head: RunHead, *, spoilt: bool, wide: bool) -> tuple[str, ...]:
+def run_row(head: RunHead, *, spoilt: bool, wide: bool) -> tuple[str | Text, ...]:
     """The cells of this line."""
     result = outcome(head.mode, head.result, spoilt=spoilt)
-    colour = _COLOURS.get(result, "red")
     mark = " (sim)" if head.simulated else ""
     return (
         str(head.number),
@@ -93,7 +93,7 @@ def run_row(head: RunHead, *, spoilt: bool, wide: bool) -> tuple[str, ...]:
         head.mode.lower(),
         f"{head.started:%Y-%m-%d %H:%M}",
         duration(head.started, head.ended),
-        f"[{colour}]{result}[/]",
+        Text(result, style=_COLOURS.get(result, "red")),
     )
 
 
@@ -118,5 +118,5 @@ def _figures(judged: Sequence[Figure], said: Mapping[str, str]) -> Table:
         texts = (quantity(value, entry.unit) for value in (entry.value, entry.lower, entry.upper))
         verdict = said[entry.key]
         style = _VERDICTS.get(verdict, "yellow")
-        table.add_row(entry.label, *texts, f"[{style}]{verdict}[/]")
+        table.add_row(entry.label, *texts, Text(verdict, style=style))
     return table

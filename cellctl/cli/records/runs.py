@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_mcap import Images, write_mcap
@@ -73,7 +73,7 @@ def list_runs(
         typer.echo("no runs")
         return
     spoilt = {one.head.number for one in found if one.spoilt}
-    console = Console()
+    console = console_of_tables()
     console.print(run_table([one.head for one in found], spoilt, wide=console.width >= WIDE))
 
 

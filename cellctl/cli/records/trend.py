@@ -5,9 +5,9 @@ from dataclasses import asdict
 from typing import Annotated
 
 import typer
-from rich.console import Console
 from rich.table import Table
 
+from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.records.entries import Verdict
@@ -48,12 +48,12 @@ def trend(
         plain = {"key": key, "unit": unit, "samples": [asdict(one) for one in samples]}
         typer.echo(as_plain(plain | asdict(found)))
         return
-    console = Console()
+    console = console_of_tables()
     console.print(_chart(samples, found, f"{key}, {unit}" if unit else key))
     for line in _words(found, unit):
-        console.print(line, markup=False)
+        console.print(line)
     for signal in found.signals:
-        console.print(f"run {signal.run}: {signal.rule}", style="yellow", markup=False)
+        console.print(f"run {signal.run}: {signal.rule}", style="yellow")
 
 
 def _too_few(key: str, known: Sequence[str], count: int) -> str:

@@ -1,5 +1,6 @@
 """``cellctl devices``: the cameras that GenTL producers see, with what a cell file needs."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -49,7 +50,8 @@ def devices(
     if not seen:
         typer.echo("no camera is seen: look at its power, its cable, its subnet and the firewall")
         return
-    Console().print(_table(seen))
+    # Names of cameras are what people have given them: brackets in them are no mark-up.
+    Console(markup=False, emoji=False).print(_table(seen))
     typer.echo(_for_cell_file(seen))
 
 
@@ -103,6 +105,6 @@ def _head_of(*cameras: SeenCamera) -> list[str]:
 def _key(one: SeenCamera) -> str:
     """What of it names the camera best."""
     keys = ("serial_number", "user_name", "id")
-    return next(
-        f'{key} = "{getattr(one, key)}"' for key in keys if getattr(one, key) or key == "id"
-    )
+    key = next(key for key in keys if getattr(one, key) or key == "id")
+    # Quotes and backslashes in a name are written in TOML as they are in JSON.
+    return f"{key} = {json.dumps(getattr(one, key), ensure_ascii=False)}"

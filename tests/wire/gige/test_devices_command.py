@@ -66,6 +66,16 @@ def test_a_long_name_is_shown_whole(tmp_path: Path, producer: Path) -> None:
     assert "…" not in said
 
 
+def test_a_name_is_shown_and_written_as_it_is(tmp_path: Path, producer: Path) -> None:
+    """Brackets are no mark-up of the terminal, quotes no end of a text in TOML."""
+    cameras = [FakeCamera('A"1', "eye [left] :100:")]
+    with FakeCameras(tmp_path / "cameras", cameras) as fakes:
+        said = ran("--producer", str(producer), FAKE_GENTL_STATE=str(fakes.path)).stdout
+    assert "eye [left] :100:" in said
+    cell = tomllib.loads("[cameras.eye]" + said.partition("[cameras.eye]")[2])
+    assert cell["cameras"]["eye"]["settings"]["camera"]["serial_number"] == 'A"1'
+
+
 def test_an_empty_network_is_said(producer: Path, fakes: FakeCameras) -> None:
     for serial in (LEFT, RIGHT):
         fakes.inject(serial, "lost")

@@ -75,6 +75,19 @@ def test_a_figure_that_its_uncertainty_leaves_open_is_not_called_a_pass(
     assert re.search(r"angle error\s+0.004°\s+–\s+0.006°\s+not decided", shown)
 
 
+def test_brackets_in_names_and_serial_numbers_are_shown(
+    runner: CliRunner, store: RunStore
+) -> None:
+    """Rich takes ``[x]`` for mark-up: two parts would have one serial number."""
+    run = start(store, "SAT-[a]-7 :100:")
+    store.add(run, figure("gap_[x]", 0.1, "mm", limit=Limit(upper=0.2)))
+    asked = ("--data-dir", str(store.path))
+    assert "SAT-[a]-7 :100:" in runner.invoke(app, ["list", *asked]).stdout
+    shown = runner.invoke(app, ["show", str(run), *asked]).stdout
+    assert "SAT-[a]-7 :100:" in shown
+    assert "gap [x]" in shown
+
+
 def test_a_run_is_exported(runner: CliRunner, folder: str, tmp_path: Path) -> None:
     out = tmp_path / "handed on"
     result = runner.invoke(app, ["export", "1", "--out", str(out), "--data-dir", folder])
