@@ -75,9 +75,7 @@ def test_a_figure_that_its_uncertainty_leaves_open_is_not_called_a_pass(
     assert re.search(r"angle error\s+0.004°\s+–\s+0.006°\s+not decided", shown)
 
 
-def test_brackets_in_names_and_serial_numbers_are_shown(
-    runner: CliRunner, store: RunStore
-) -> None:
+def test_brackets_in_names_and_serial_numbers_are_shown(runner: CliRunner, store: RunStore) -> None:
     """Rich takes ``[x]`` for mark-up: two parts would have one serial number."""
     run = start(store, "SAT-[a]-7 :100:")
     store.add(run, figure("gap_[x]", 0.1, "mm", limit=Limit(upper=0.2)))
