@@ -12,13 +12,16 @@ from cellctl.api.local_socket.messages import (
     parse_answer,
     to_line,
 )
-from cellctl.errors.local import DaemonNotReached
+from cellctl.errors.local import DaemonNotReached, MessageMalformed
 from cellctl.hmi.hub import Hub
 
 RETRY_S = 0.5
 SILENT_S = 3.0
 """The daemon sends ten snapshots a second; one that sends none is asked anew."""
 ANSWER_S = 10.0
+
+_LOST = (OSError, EOFError, TimeoutError, asyncio.LimitOverrunError)
+"""How a connection ends; the last one with a line that is longer than any of the daemon's."""
 
 _log = log.get(__name__)
 
@@ -39,7 +42,7 @@ class DaemonLink:
         while True:
             try:
                 await self._follow()
-            except (OSError, EOFError, TimeoutError, ValueError) as error:
+            except (*_LOST, ValueError) as error:
                 # Once, and not at every try: a daemon may be away for a night.
                 if self._hub.linked:
                     _log.warning("daemon lost", reason=type(error).__name__)
@@ -75,7 +78,8 @@ class DaemonLink:
             writer.write(to_line(command))
             async with asyncio.timeout(ANSWER_S):
                 return parse_answer(await reader.readuntil())
-        except (OSError, EOFError, TimeoutError) as error:
+        except (*_LOST, MessageMalformed) as error:
+            # Also an answer that this page cannot read: the daemon did something before it gave it.
             raise AnswerMissing from error
         finally:
             writer.transport.abort()

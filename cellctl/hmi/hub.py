@@ -30,8 +30,12 @@ class Hub:
         message = json.loads(line)
         kind = message.get("kind") if isinstance(message, dict) else None
         if kind == "snapshot":
+            try:
+                self._remember(message)
+            except (KeyError, TypeError) as error:
+                # Of a daemon of another version. Kept, it would fail whoever asks for its age.
+                raise ValueError("a snapshot without what the page needs of it") from error
             self.snapshot = message
-            self._remember(message)
         elif kind == "description":
             self.description = message
         else:
@@ -76,6 +80,7 @@ class Hub:
             next((axis["value"] for axis in force["wrench"] if axis["axis"] == "Fz"), None)
             for force in snapshot["forces"]
         ]
+        oldest_s = snapshot["mono_s"] - CURVE_S
         self._curve.append((snapshot["mono_s"], values))
-        while self._curve[0][0] < snapshot["mono_s"] - CURVE_S:
+        while self._curve[0][0] < oldest_s:
             self._curve.popleft()
