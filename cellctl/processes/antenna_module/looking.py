@@ -13,7 +13,7 @@ from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.cell.standstill import require_unmoved
-from cellctl.clock import now_s, utc_at
+from cellctl.clock import utc_at
 from cellctl.geometry.pose import MM, Array, pose_error, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import Camera
@@ -85,6 +85,7 @@ class Eyes:
         # different poses belongs to neither.
         state = self.arm.robot.state()
         images, found = [], []
+        time_s = state.time_s
         for number in range(1, self.frames + 1):
             taken = await camera.grab()
             image = measured_channel(taken)
@@ -94,10 +95,11 @@ class Eyes:
                 kept = TakenImage(name, camera.name, utc_at(taken.time_s))
                 await self.recorder.add(*documents_of_look(name, {file: kept}, {}))
                 self.recorder.raw_image(file, image)
+            time_s = taken.time_s
             images.append(image)
             found.append(await self.workers.run(measure, image))
         require_unmoved("the arm", self.arm.robot, state.base_T_flange)
-        return Seen(tuple(found), tuple(images), state.base_T_flange, state.joints_rad, now_s())
+        return Seen(tuple(found), tuple(images), state.base_T_flange, state.joints_rad, time_s)
 
 
 def measured_channel(image: CameraImage) -> Image:

@@ -43,8 +43,9 @@ async def leave(attempt: PushAttempt, stand_off_m: float) -> None:
     """Slowly up to the stand-off; raises ``LiftOffHeld`` when the plug does not come."""
     fx, fy, fz, mx, my, mz = (abs(float(value)) for value in await attempt.read())
     pull_n = PULL_RATIO * attempt.limits.greatest_n
-    # What presses may go but not grow; along the way the contacts may hold as long as they slide.
-    most = (fx + SIDE_N, fy + SIDE_N, max(fz, pull_n))
+    # What presses may go, and grow by no more than a reading is off its mean; along the way the
+    # contacts may hold as long as they slide.
+    most = (fx + SIDE_N, fy + SIDE_N, max(fz + SIDE_N, pull_n))
     turn = (mx + MOMENT_N_M, my + MOMENT_N_M, mz + MOMENT_N_M)
     await attempt.arm_with(guard_limits((*most, *turn), attempt.sensing))
     here = attempt.robot.state().base_T_flange

@@ -1,5 +1,6 @@
 """From the stand-off to the seat (docs/plugging.md, "Judging an insertion")."""
 
+import asyncio
 from collections import deque
 
 from cellctl.cell.guarded_motion.guarded_moves import Motion
@@ -46,7 +47,8 @@ async def push_in(attempt: PushAttempt, step_m: float) -> float:
         # As deep as the drawing allows, and nothing has stopped the plug.
         if next_m <= depth_m:
             raise PlugShortSeat(f"no seat felt down to {depth_m / MM:.2f} mm")
-        bounds = limits.at(next_m)
+        # Of the step and not of its end, which is where the next phase begins.
+        bounds = limits.at((depth_m + next_m) / 2.0)
         if bounds.phase is not phase:
             # Armed anew at standstill: within a phase the limits are the same everywhere.
             await attempt.arm(bounds)
@@ -90,10 +92,10 @@ async def _watched(attempt: PushAttempt, motion: Motion, phase: InsertionPhase) 
     """Run a move, then judge its samples by what the guard cannot: trend and centre of pressure."""
     trip = await attempt.move(motion)
     if trip is not None:
-        raise _fault(attempt, trip, phase)
+        raise await _fault(attempt, trip, phase)
     found = attempt.feed_watch()
     if found is not None:
-        raise _met(attempt, found.cause, _words(found))
+        raise await _met(attempt, found.cause, _words(found))
 
 
 def _words(trip: InsertionTrip) -> str:
@@ -103,7 +105,7 @@ def _words(trip: InsertionTrip) -> str:
     )
 
 
-def _fault(attempt: PushAttempt, trip: GuardTrip, phase: InsertionPhase) -> CellError:
+async def _fault(attempt: PushAttempt, trip: GuardTrip, phase: InsertionPhase) -> CellError:
     """What a trip of the guard means here; of sensor or links it stays what it is."""
     if not trip.force:
         return trip.fault()
@@ -111,7 +113,7 @@ def _fault(attempt: PushAttempt, trip: GuardTrip, phase: InsertionPhase) -> Cell
         cause = TripCause.OVER if phase is InsertionPhase.SLIDING else TripCause.AXIAL_EARLY
     else:
         cause = TripCause.SIDE
-    return _met(attempt, cause, str(trip))
+    return await _met(attempt, cause, str(trip))
 
 
 _BY_CAUSE: dict[TripCause, type[PluggingError]] = {
@@ -123,13 +125,16 @@ _BY_CAUSE: dict[TripCause, type[PluggingError]] = {
 }
 
 
-def _met(attempt: PushAttempt, cause: TripCause, words: str) -> PluggingError:
+async def _met(attempt: PushAttempt, cause: TripCause, words: str) -> PluggingError:
     """The fault that the curve so far names; it may point at a contact, which a trip cannot."""
     curve = attempt.curve()
     # At the entry the curve can name a single bent contact; a fault that only says that there is no
     # seat yet is none.
     if cause is TripCause.AXIAL_EARLY and len(curve.t_s) >= _FEWEST_SAMPLES:
-        judged = judge_insertion(curve, attempt.socket, attempt.limits).fault
+        # In a thread: it takes long, and the robot has to hear from the loop all the time.
+        judged = (
+            await asyncio.to_thread(judge_insertion, curve, attempt.socket, attempt.limits)
+        ).fault
         if judged is not None and not isinstance(judged, PlugShortSeat):
             return type(judged)(f"{words}; {judged.detail}")
     return _BY_CAUSE[cause](words)

@@ -1,5 +1,7 @@
 """Step 80: into the socket under force limits that follow depth."""
 
+import asyncio
+
 from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors import CellError
@@ -64,7 +66,10 @@ async def _pushed(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
 
 async def _judged(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
     """The verdict of the whole curve; raises its fault."""
-    judgement = judge_insertion(attempt.curve(), attempt.socket, attempt.limits)
+    # In a thread, as the text of the curve: a minute of samples takes a quarter of a second, too.
+    judgement = await asyncio.to_thread(
+        judge_insertion, attempt.curve(), attempt.socket, attempt.limits
+    )
     await record_judgement(run, judgement, attempt.limits)
     if judgement.fault is not None:
         raise judgement.fault

@@ -60,8 +60,8 @@ async def _pull(run: PluggingRun, attempt: PushAttempt) -> float:
     begin_m = attempt.depth_m
     readings = [(begin_m, float((await attempt.read())[_AXIAL]))]
     pulled_m, pull_n = 0.0, 0.0
-    while pull_n < wanted_n and pulled_m < most_m:
-        pulled_m += FINE_M
+    while pull_n < wanted_n and pulled_m < most_m - 1e-9:
+        pulled_m = min(pulled_m + FINE_M, most_m)
         pose = attempt.way.pose_at(begin_m - pulled_m)
         trip = await attempt.move(attempt.robot.step(pose, speed_m_s=PULL_SPEED_M_S))
         if trip is not None:

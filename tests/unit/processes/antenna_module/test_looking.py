@@ -69,7 +69,7 @@ async def test_each_raw_image_is_recorded_with_its_exposure(
     monkeypatch.setattr(looking, "require_unmoved", Mock())
     exposures = [ExposureRecord("1", "Mono8", 8, exposure_s=seconds) for seconds in (0.01, 0.02)]
     grey = np.zeros((4, 4), np.uint8)
-    images = [CameraImage(grey, PixelFormat.MONO8, 0.0, n, one) for n, one in enumerate(exposures)]
+    images = [CameraImage(grey, PixelFormat.MONO8, n, n, one) for n, one in enumerate(exposures)]
     recorder = Mock(exposures=AsyncMock(), add=AsyncMock())
     camera = Mock(grab=AsyncMock(side_effect=images))
     camera.name = "over_tray"
@@ -84,7 +84,9 @@ async def test_each_raw_image_is_recorded_with_its_exposure(
         return measure(image)
 
     eyes = Eyes(Mock(), Mock(run=run), recorder, frames=2, exposures=exposing)
-    await eyes.look("tray", cast(Camera, camera), np.sum)
+    seen = await eyes.look("tray", cast(Camera, camera), np.sum)
+    # Of the last image: what comes after it, measuring for one, makes a look older and not newer.
+    assert seen.time_s == 1.0
     exposing.find.assert_awaited_once()
     files = [f"raw/tray-frame-{number}.pgm.zst" for number in (1, 2)]
     assert [call.args[0] for call in recorder.raw_image.call_args_list] == files

@@ -108,6 +108,8 @@ class PlugArm:
     def __init__(self, world: PlugWorld, guard: PlugGuard) -> None:
         self.world, self.guard = world, guard
         self.asked: list[str] = []
+        self.speeds_m_s: list[float] = []
+        """Of every step."""
 
     def state(self, max_age_s: float = 0.25) -> RobotState:
         return RobotState(
@@ -117,6 +119,7 @@ class PlugArm:
 
     async def step(self, target: RigidTransform, *, speed_m_s: float) -> RobotState:
         assert speed_m_s <= 0.4e-3 + 1e-9
+        self.speeds_m_s.append(speed_m_s)
         return await self._go(target)
 
     async def move_linear(

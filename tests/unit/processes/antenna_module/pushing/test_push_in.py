@@ -51,6 +51,19 @@ async def test_no_move_is_longer_than_a_step_and_fine_near_the_seat() -> None:
     assert steps[near].max() <= 0.02 + 1e-6
 
 
+async def test_every_step_of_the_entry_is_as_slow_as_the_entry() -> None:
+    """Also the last one, which ends where the springs begin."""
+    world = PlugWorld()
+    push = Push(world)
+    async with push as attempt:
+        await push_in(attempt, STEP_M)
+        entry_m_s = attempt.limits.entry_m_s
+    ends_mm = world.targets_mm[1:]
+    assert len(ends_mm) == len(push.arm.speeds_m_s)
+    for end_mm, speed_m_s in zip(ends_mm, push.arm.speeds_m_s, strict=True):
+        assert (speed_m_s == entry_m_s) == (end_mm < 0.5 + 1e-6)
+
+
 def pressing(begin_mm: float, n_per_mm: float, component: int = 2, lever_m: float = 0.0) -> Wrench:
     """Something that resists from a depth on, at a lever along y."""
 
@@ -139,3 +152,17 @@ async def test_a_robot_that_is_not_ready_is_not_moved_out() -> None:
         there, world.ready = world.depth_mm(), False
         await back_out(attempt, raised.value, STAND_OFF_M)
     assert world.depth_mm() == there
+
+
+async def test_noise_on_what_presses_does_not_stop_the_way_out() -> None:
+    """A mean is what half of the samples are above."""
+    world = PlugWorld(pressing(1.0, 60.0))
+    push = Push(world)
+    async with push as attempt:
+        with pytest.raises(PlugOverForce) as raised:
+            await push_in(attempt, STEP_M)
+        pressed_n = 200.0
+        world.wrench = lambda depth_mm: (0.0, 0.0, pressed_n, 0.0, 0.0, 0.0)
+        world.go(world.flange)
+        await back_out(attempt, raised.value, STAND_OFF_M)
+    assert push.guard.limits[-1].filtered[2] > pressed_n + 1.0

@@ -157,3 +157,19 @@ async def test_the_curve_is_written_out_beside_the_loop(
     await recorded.record_curve(bench.run(), empty)
     assert threads
     assert threads[0] != threading.get_ident()
+
+
+async def test_the_loop_runs_on_while_the_curve_is_judged(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    threads: list[int] = []
+    judge = step.judge_insertion
+
+    def judged(*given: Any) -> Any:
+        threads.append(threading.get_ident())
+        return judge(*given)
+
+    monkeypatch.setattr(step, "judge_insertion", judged)
+    await step.insert(Over(bench, monkeypatch).state())
+    assert threads
+    assert threading.get_ident() not in threads

@@ -125,6 +125,15 @@ async def test_a_module_that_stays_is_good(plugged: Plugged) -> None:
     assert figures[keys.GAP] == pytest.approx(0.0, abs=5e-3)
 
 
+async def test_a_pull_is_no_longer_than_the_recipe_allows(plugged: Plugged) -> None:
+    """A step more would be a figure beyond its limit in the record of a good part."""
+    insertion = plugged.bench.recipe.insertion.model_copy(update={"pull_travel_mm": 0.05})
+    state = await plugged.inserted(insertion=insertion)
+    with pytest.raises(PlugNotHeld, match=r"after 0\.05 mm"):
+        await verify.verify(state)
+    assert min(plugged.worlds[0].targets_mm) == pytest.approx(2.5 + PRESSED_MM - 0.05)
+
+
 async def test_a_plug_that_follows_the_pull_is_not_released(plugged: Plugged) -> None:
     plugged.wrench = loose
     state = await plugged.inserted()
