@@ -101,7 +101,7 @@ _LOOP = (
         "max_stream_travel_deg = 15.0",
         "max_stream_travel_deg = 1.5",
         "robots.arm.settings.max_stream_travel_deg",
-        "tilts the part",
+        "tilts and turns the part",
     ),
     _pin(
         "base_T_hole]\npose = [500.0, -200.0",
@@ -133,7 +133,7 @@ _FIT = (
         "uncertainty_deg = 1.8",
         "uncertainty_deg = 18.0",
         "robots.arm.settings.max_stream_travel_deg",
-        "at least 18",
+        "at least 30.5",
         at_the_other=True,
     ),
 )

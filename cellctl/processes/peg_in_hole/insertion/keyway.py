@@ -26,6 +26,11 @@ _DAMPING = 1.5
 """Factor of the admittance's damping along z (force/contact/streamed/gains.py)."""
 
 
+def sweep_rad(keys: KeyGeometry) -> float:
+    """How far the plug is turned to either side."""
+    return _SWEEP_RATIO * keys.uncertainty_rad
+
+
 async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeometry) -> None:
     """From the entry of the hole to below the ends of the keyways; raises ``KeywayNotFound``.
 
@@ -34,7 +39,7 @@ async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeomet
     """
     through_m = (1.0 + _THROUGH_RATIO) * keys.depth_m
     motion = await motions.feed(through_m, task.limits.search_n)
-    greatest_rad = _SWEEP_RATIO * keys.uncertainty_rad
+    greatest_rad = sweep_rad(keys)
     for target_rad in (greatest_rad, -greatest_rad):
         # Through, or stopped by something else than the keys, which turning would not help.
         if motion.ended is not Ended.FORCE or not _on_keys(motion.last, task, keys):

@@ -27,6 +27,11 @@ def _upright(standing: Standing) -> Array:
     return np.array([0.0, 0.0, standing.yaw_rad])
 
 
+def yaw_rad(fit: FitGeometry) -> float:
+    """How far ``Yaw`` turns to either side; a keyed plug by its play only."""
+    return _YAW_RAD if fit.keys is None else min(_YAW_RAD, fit.keys.window_rad)
+
+
 class Recovery(ABC):
     """One measure."""
 
@@ -76,9 +81,9 @@ class Yaw(Recovery):
     name: ClassVar[str] = "yaw"
 
     async def apply(self, motions: ContactMotions, fit: FitGeometry, standing: Standing) -> None:
-        """Turn to both sides at 50 % of the force; a keyed plug by its play only."""
+        """Turn to both sides at 50 % of the force."""
         hold = np.array([0.0, 0.0, _HALVED * standing.axial_n])
-        greatest = _YAW_RAD if fit.keys is None else min(_YAW_RAD, fit.keys.window_rad)
+        greatest = yaw_rad(fit)
         for angle in (greatest, -greatest, 0.0):
             turned = _upright(standing) + np.array([0.0, 0.0, angle])
             await motions.turn(turned, hold, _YAW_RAD_S)

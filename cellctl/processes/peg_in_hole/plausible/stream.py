@@ -7,12 +7,15 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.over_places import Over, flange_at
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.peg_in_hole.insertion.keyway import sweep_rad
+from cellctl.processes.peg_in_hole.insertion.recovery import yaw_rad
 from cellctl.processes.peg_in_hole.plan.choice import TILTED
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ABOVE_HOLE, ARM
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import tip_at_hole
+from cellctl.processes.peg_in_hole.verdict.holding import telling_turn_rad
 
 _TRAVEL_MM, _TRAVEL_DEG = "max_stream_travel_mm", "max_stream_travel_deg"
 
@@ -62,7 +65,7 @@ def stream_issues(
     turn_deg = _turn_deg(recipe, settings)
     travel_deg = written.get(_TRAVEL_DEG)
     if isinstance(travel_deg, int | float) and travel_deg < turn_deg:
-        allowed = f"at least {turn_deg:.1f}, by which the search tilts the part and turns its keys"
+        allowed = f"at least {turn_deg:.1f}, by which the cycle tilts and turns the part"
         yield ConfigIssue(f"robots.{arm}.settings.{_TRAVEL_DEG}", f"{travel_deg:g}", allowed)
 
 
@@ -77,8 +80,14 @@ def _to_the_face_mm(cell: CellConfig, recipe: PegRecipe, arm: str) -> float:
 
 
 def _turn_deg(recipe: PegRecipe, settings: PegSettings) -> float:
-    choice = cycle_plan(recipe, settings).choice
-    keys = recipe.fit.keys
+    """The greatest turn away from the attitude in which the stream begins."""
+    plan = cycle_plan(recipe, settings)
+    choice, fit = plan.choice, plan.task.fit
     tilts = bool(TILTED & set(choice.order))
-    tilt_deg = degrees(choice.parameters.tilt.value) if tilts else 0.0
-    return tilt_deg + (0.0 if keys is None else keys.uncertainty_deg)
+    tilt_rad = choice.parameters.tilt.value if tilts else 0.0
+    # Upright by then. Keys may drop at the end of the sweep, and what turns after that turns from
+    # there.
+    about_rad = yaw_rad(fit)
+    if fit.keys is not None:
+        about_rad = sweep_rad(fit.keys) + max(about_rad, telling_turn_rad(fit.keys))
+    return degrees(max(tilt_rad, about_rad))

@@ -17,6 +17,11 @@ _MARGIN_M = 0.3e-3
 _SETTLE_S = 0.5
 
 
+def telling_turn_rad(keys: KeyGeometry) -> float:
+    """A turn from anywhere in its play that a part held by its keys does not make."""
+    return 2 * keys.window_rad + _BEYOND_RAD
+
+
 async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeometry) -> int:
     """Of two; the part is left at the angle at which it was."""
     begun = (await motions.press(_PRESS_N, _SETTLE_S, never)).last
@@ -30,8 +35,7 @@ async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeomet
 
     resisted = 0
     for sign in (1.0, -1.0):
-        # From wherever in its play the part stands now.
-        target = upright + np.array([0.0, 0.0, sign * (2 * keys.window_rad + _BEYOND_RAD)])
+        target = upright + np.array([0.0, 0.0, sign * telling_turn_rad(keys)])
         turned = await motions.turn(target, hold, _TURN_RAD_S, met)
         resisted += turned.ended is Ended.CONDITION
         # Back each time, so that both directions begin from the same angle and the part stays as it
