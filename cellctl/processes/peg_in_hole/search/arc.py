@@ -4,7 +4,7 @@ Source: section 3.6 of the study of insertion by touch. There the arc is traced 
 is touched point by point, since motions by touch press along one axis at a time.
 """
 
-from math import radians
+from math import ceil, radians
 from typing import ClassVar
 
 import numpy as np
@@ -59,16 +59,22 @@ async def _touch_arc(probe: TouchProbe, edge_m: Array, rim_m: float) -> list[Arr
     )
     centre_m = edge_m - np.array([rim_m, 0.0])
     await probe.motions.back_out(_NEAR_M)
+    beside_rad: float | None = None
     for angle in _angles():
         outwards = np.array([np.cos(angle), np.sin(angle)])
         known = len(points) >= 3
-        # Along its first edge the plug is known from the slide, across it only as well as the hole
-        # was before.
-        gap_m = _NEAR_M if known else _NEAR_M + task.cell.uncertainty_m * abs(np.sin(angle))
-        begin_m = centre_m + (rim_m + gap_m) * outwards
-        if not points:
+        unknown_m = 0.0 if known else task.cell.uncertainty_m
+        if beside_rad is None:
             over = np.array([*(centre_m + (rim_m + _CLEAR_M) * outwards), -_NEAR_M])
             await probe.motions.move_free(over, UPRIGHT, _FREE_M_S)
+        elif not await _went_round(probe, centre_m, rim_m + unknown_m, (beside_rad, angle)):
+            # What stands beside the plug is none of it: no touch from there would tell anything.
+            break
+        beside_rad = angle
+        # Along its first edge the plug is known from the slide, across it only as well as the hole
+        # was before.
+        gap_m = _NEAR_M + unknown_m * abs(np.sin(angle))
+        begin_m = centre_m + (rim_m + gap_m) * outwards
         await probe.motions.move_free(np.array([*begin_m, _BELOW_FACE_M]), UPRIGHT, _FREE_M_S)
         touched = await probe.motions.touch(
             np.array([*-outwards, 0.0]),
@@ -77,16 +83,37 @@ async def _touch_arc(probe: TouchProbe, edge_m: Array, rim_m: float) -> list[Arr
             None if known else far_m_s,
         )
         probe.still_in_time(touched.last)
-        # Nothing was met at this angle; three of the touches are enough for a circle.
-        if touched.ended is not Ended.FORCE:
-            continue
-        probe.trace.note(touched.last, Felt.WALL)
-        points.append(touched.last.task_position_tip_m[:2].copy())
-        back = np.array([*(points[-1] + _CLEAR_M * outwards), _BELOW_FACE_M])
+        # Where nothing was met, three of the other touches are enough for a circle.
+        if touched.ended is Ended.FORCE:
+            probe.trace.note(touched.last, Felt.WALL)
+            points.append(touched.last.task_position_tip_m[:2].copy())
+            begin_m = points[-1]
+        back = np.array([*(begin_m + _CLEAR_M * outwards), _BELOW_FACE_M])
         await probe.motions.move_free(back, UPRIGHT, _FREE_M_S)
         if len(points) >= 3:
             centre_m = circle_through(np.stack(points))[0]
     return points
+
+
+async def _went_round(
+    probe: TouchProbe, centre_m: Array, inside_m: float, angles_rad: tuple[float, float]
+) -> bool:
+    """From one angle beside the plug to another, never within a radius; False where it was stopped.
+
+    The straight way leads through the plug.
+    """
+    radius_m, (from_rad, to_rad) = inside_m + _CLEAR_M, angles_rad
+    # The middle of each short straight piece is nearer to the plug than its ends.
+    step_rad = 2 * np.arccos((inside_m + _CLEAR_M / 2) / radius_m)
+    steps = ceil(abs(to_rad - from_rad) / step_rad)
+    for at_rad in np.linspace(from_rad, to_rad, steps + 1):
+        place_m = centre_m + radius_m * np.array([np.cos(at_rad), np.sin(at_rad)])
+        moved = await probe.motions.move_free(
+            np.array([*place_m, _BELOW_FACE_M]), UPRIGHT, _FREE_M_S
+        )
+        if moved.ended is Ended.FORCE:
+            return False
+    return True
 
 
 def _angles() -> list[float]:

@@ -5,7 +5,9 @@ from typing import cast
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+from cellctl.cell.contact_motion.motions import ContactMotion
 from cellctl.processes.peg_in_hole.faults import HoleAbsent, SearchGaveUp
 from cellctl.processes.peg_in_hole.plan.choice import SearchName, choose_search
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
@@ -17,6 +19,8 @@ from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 from tests.rigs.insertion.kinematic import KinematicMotions
 from tests.rigs.insertion.surface import Truth
 from tests.unit.processes.peg_in_hole.tasks import pin, plug
+
+Array = NDArray[np.float64]
 
 
 def searching(
@@ -57,6 +61,34 @@ def test_a_strategy_finds_the_hole_and_stands_in_it(
         assert entered == (off_m < task.fit.catch_radius_m)
         found += entered
     assert found >= least
+
+
+class Beside(KinematicMotions):
+    """Remembers how near its free ways have come to the axis of a plug below its face."""
+
+    nearest_m = np.inf
+
+    async def move_free(
+        self, task_position_tip_m: Array, task_rotation_tip_rad: Array, speed_m_s: float
+    ) -> ContactMotion:
+        way = np.linspace(self.position_m, task_position_tip_m, 101)
+        below = way[way[:, 2] > 1e-3]
+        from_axis_m = np.hypot(*(below[:, :2] - self.truth.hole_m).T)
+        self.nearest_m = float(np.min(from_axis_m, initial=self.nearest_m))
+        return await super().move_free(task_position_tip_m, task_rotation_tip_rad, speed_m_s)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_ways_along_a_plug_go_round_it(seed: int) -> None:
+    """A straight one between two touches would end at its side."""
+    task = plug(0.05, chamfer_mm=0)
+    rng = np.random.default_rng(seed)
+    motions = Beside(task, Truth.draw(task, rng), rng)
+    hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
+    probe = TouchProbe(motions, task, search_parameters(task), hole_map, 120.0)
+    asyncio.run(STRATEGIES[SearchName.ARC].find(probe))
+    touched_m = 0.2e-3  # what encoders and readings are off
+    assert motions.nearest_m > (task.fit.rim_m or 0.0) - touched_m
 
 
 class FindsNothing(SearchStrategy):
