@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 import numpy as np
+from pydantic import ValidationError
 
 from cellctl.cell.contact_motion.ticks import MotionKind
 from cellctl.geometry.pose import MM, Array
@@ -97,11 +98,15 @@ def _insertion_limit_n(record: RunRecord) -> float | None:
 
 
 def _jam(record: RunRecord, ticks: ReadTicks) -> Array | None:
-    """Ratio of each tick of a feed; None for runs of earlier versions, which have no task."""
+    """Ratio of each tick of a feed; None for runs of other versions, whose task says less."""
     written = record.document(keys.TASK)
     if not written:
         return None
-    part = JudgedPart.model_validate(written)
+    try:
+        part = JudgedPart.model_validate(written)
+    except ValidationError:
+        # Of another version: the report shows all the rest of the run.
+        return None
     fit, values = part.fit, ticks.values
     force_n = np.stack([values[name] for name in ("fx_n", "fy_n", "fz_n")], axis=1)
     moment_nm = np.stack([values[name] for name in ("mx_nm", "my_nm", "mz_nm")], axis=1)

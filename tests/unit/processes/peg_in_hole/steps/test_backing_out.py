@@ -67,3 +67,15 @@ def test_the_peg_stays_where_a_pull_could_do_harm_or_would_not_be_felt(
 def test_a_peg_that_is_held_on_its_way_out_is_told() -> None:
     told = asyncio.run(back_out_after(PegJammed("4.0 mm"), InTheHole(held=True)))
     assert told == "something holds the peg back"
+
+
+def test_what_fails_on_the_way_out_does_not_hide_what_became_of_the_part() -> None:
+    """A jammed part is a bad one, whatever the arm does then."""
+
+    class Late(InTheHole):
+        async def back_out(self, height_m: float) -> ContactMotion:
+            raise StreamLate(f"to {height_m}")
+
+    fault = PegJammed("4.0 mm")
+    assert asyncio.run(back_out_after(fault, Late())) == "the peg is left where it stands"
+    assert any("F587" in note or StreamLate.text in note for note in fault.__notes__)
