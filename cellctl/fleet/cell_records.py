@@ -143,7 +143,9 @@ def _reading_engine(file: Path) -> Engine:
     def connect() -> sqlite3.Connection:
         if not file.exists():
             raise sqlite3.OperationalError(f"there is no {file}")
-        connection = sqlite3.connect(f"file:{file}?mode=ro", uri=True, timeout=5.0)
+        # As a URI, in which a question mark or a per cent sign of a folder's name is written so.
+        where = f"{file.absolute().as_uri()}?mode=ro"
+        connection = sqlite3.connect(where, uri=True, timeout=5.0)
         connection.isolation_level = None
         # A deferred transaction begins with its first query, and keeps what it sees.
         connection.execute("BEGIN")

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import re
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -96,7 +97,9 @@ def _first_free(folder: Path, name: str) -> int:
     """The number after those of an earlier call; raises ``FileInvalid`` for no usable folder."""
     try:
         make_folder_durably(folder)
-        stems = [path.stem.removeprefix(f"{name}-")[:6] for path in folder.glob(f"{name}-*")]
+        files = [path.name.removeprefix(f"{name}-") for path in folder.glob(f"{name}-*")]
     except OSError as error:
         raise FileInvalid(f"cannot write {folder}: {error.strerror or error}") from error
-    return max((int(text) for text in stems if text.isdecimal()), default=0) + 1
+    # Six digits are the least: the millionth image has seven.
+    numbers = [found.group() for file in files if (found := re.match(r"\d{6,}", file))]
+    return max(map(int, numbers), default=0) + 1

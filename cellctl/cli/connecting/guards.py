@@ -148,7 +148,9 @@ def heard_from(
         if now_s() >= beat_s:
             channel.heartbeat()
             beat_s += _BEAT_S
-        select.select([channel.fileno()], [], [], _LOOK_S)
+        # A channel that has lost its connection has no descriptor; its next call says what it lost.
+        waiting = [descriptor] if (descriptor := channel.fileno()) >= 0 else []
+        select.select(waiting, [], [], _LOOK_S)
         report = channel.poll()
         if report is not None and report.time_s < end_s:
             found.append(report)

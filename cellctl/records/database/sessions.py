@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
-from sqlalchemy import Engine, create_engine, event
+from sqlalchemy import URL, Engine, create_engine, event
 from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
@@ -125,9 +125,9 @@ class Database:
 
 
 def _engine(file: Path, lock_wait_s: float) -> Engine:
-    engine = create_engine(
-        f"sqlite:///{file}", connect_args={"timeout": lock_wait_s, "check_same_thread": False}
-    )
+    # Not as a text, in which a question mark of a folder's name ends the path.
+    url = URL.create("sqlite", database=str(file))
+    engine = create_engine(url, connect_args={"timeout": lock_wait_s, "check_same_thread": False})
 
     @event.listens_for(engine, "connect")
     def _settings(connection: Any, _record: Any) -> None:

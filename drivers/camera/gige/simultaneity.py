@@ -32,28 +32,30 @@ class Simultaneity:
         What moved in between would be in one image only.
         """
         apart_s = self._apart_s(left, right)
-        ahead_s = (left.device_time_ns - right.device_time_ns) * 1e-9
-        before, self._ahead = self._ahead, (left.time_s, ahead_s)
-        if self._clocks_agree:
+        ahead = self._by_clocks(left, right)
+        before, self._ahead = self._ahead, ahead
+        if ahead is not None and self._clocks_agree:
             # Of cameras that run freely the clocks know better than this PC.
             freely = self._trigger == "none"
-            apart_s = abs(ahead_s) if freely else max(apart_s, abs(ahead_s))
-        elif (
-            self._trigger != "none"
-            and before is not None
-            and left.device_time_ns
-            and right.device_time_ns
-        ):
+            apart_s = abs(ahead[1]) if freely else max(apart_s, abs(ahead[1]))
+        elif ahead is not None and before is not None and self._trigger != "none":
             # Each camera has a clock of its own, and only the change of their difference says
             # something; clocks drift apart by themselves meanwhile.
-            change_s = abs(ahead_s - before[1])
-            apart_s = max(apart_s, change_s - _CLOCK_DRIFT * (left.time_s - before[0]))
+            change_s = abs(ahead[1] - before[1])
+            apart_s = max(apart_s, change_s - _CLOCK_DRIFT * (ahead[0] - before[0]))
         if apart_s > self._max_difference_s:
             self._ahead = None
             raise CamerasNotTogether(
                 f"{self._name}: {apart_s * 1e3:.1f} ms apart, allowed "
                 f"{self._max_difference_s * 1e3:.1f} ms"
             )
+
+    @staticmethod
+    def _by_clocks(left: SentImage, right: SentImage) -> tuple[float, float] | None:
+        """None where an image has no time of its camera: 0 is none, and no time that agrees."""
+        if not (left.device_time_ns and right.device_time_ns):
+            return None
+        return left.time_s, (left.device_time_ns - right.device_time_ns) * 1e-9
 
     def _apart_s(self, left: SentImage, right: SentImage) -> float:
         """What this PC knows of the time between both exposures."""

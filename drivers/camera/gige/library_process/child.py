@@ -40,13 +40,17 @@ def serve(connection: Connection, parent: int) -> None:
     if os.getppid() != parent:
         return
     cameras = _Cameras()
-    with suppress(EOFError, OSError):
-        while True:
-            answer, blocks = cameras.answer(connection.recv())
-            connection.send(answer)
-            for block in blocks:
-                reduction.send_handle(connection, block, parent)
-    cameras.close()
+    try:
+        with suppress(EOFError, OSError):
+            while True:
+                answer, blocks = cameras.answer(connection.recv())
+                connection.send(answer)
+                for block in blocks:
+                    reduction.send_handle(connection, block, parent)
+    finally:
+        # Also after what nobody has foreseen: a camera that is not let go answers nobody else
+        # until its own patience ends.
+        cameras.close()
 
 
 class _Cameras:

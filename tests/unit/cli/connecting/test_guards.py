@@ -10,6 +10,7 @@ import pytest
 from cellctl.cli.connecting.guards import LISTEN_S, felt, heard_from
 from cellctl.clock import now_s
 from cellctl.config.devices import DeviceConfig, ForceSensorConfig
+from cellctl.errors.link import LinkLost
 from cellctl.interfaces import StopChannel
 from cellctl.interfaces.stop_channel import FlangeState
 
@@ -95,3 +96,17 @@ def test_the_force_is_said_in_axes_of_the_flange(
     facts = felt([(1.0, 1.0, -29.0), (1.0, 3.0, -31.0)], sensor)
     assert facts["force"].startswith(said)
     assert felt([], sensor) == {}
+
+
+def test_a_channel_without_a_connection_says_itself_what_it_lost() -> None:
+    class Dropped(Channel):
+        def fileno(self) -> int:
+            return -1
+
+        def poll(self) -> FlangeState:
+            raise LinkLost("closed by the robot")
+
+    dropped = Dropped()
+    with pytest.raises(LinkLost, match="closed by the robot"):
+        heard_from(dropped, threading.Event(), threading.Event())
+    dropped.close()
