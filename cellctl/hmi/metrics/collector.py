@@ -161,8 +161,8 @@ def _store(data_dir: Path) -> Iterator[Metric]:
 def _delivery(forwarder_dir: Path) -> Iterator[Metric]:
     try:
         state = read_state((forwarder_dir / NAME).read_text("utf-8"))
-    except OSError:
-        return  # no forwarder on this PC, as for a cell that belongs to no fleet
+    except (OSError, UnicodeDecodeError):
+        return  # no forwarder on this PC, as for a cell that belongs to no fleet; or a damaged file
     if state is None:
         return
     delivered = None if state.delivered is None else state.delivered.timestamp()

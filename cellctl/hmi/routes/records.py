@@ -16,6 +16,8 @@ from cellctl.records.run_filter import RunFilter
 router = APIRouter(tags=["records"])
 _SHOWN = frozenset({"image/png", "image/jpeg"})
 """What a browser may show; everything else it may only keep."""
+MOST = 2**53 - 1
+"""What a number of JSON holds exactly, and SQLite at all."""
 
 
 class RunSearch(BaseModel):
@@ -24,7 +26,7 @@ class RunSearch(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     limit: Annotated[int, Field(ge=1, le=200)] = 50
-    before: Annotated[int | None, Field(ge=1)] = None
+    before: Annotated[int | None, Field(ge=1, le=MOST)] = None
     """The last number of the page before."""
     serial: Annotated[str, Field(max_length=24)] = ""
     """Its beginning."""
@@ -33,7 +35,7 @@ class RunSearch(BaseModel):
     operator: Annotated[str, Field(max_length=80)] = ""
     result: Annotated[str, Field(max_length=16)] = ""
     """Such as ``good``, or ``open``."""
-    fault: Annotated[int | None, Field(ge=1)] = None
+    fault: Annotated[int | None, Field(ge=1, le=MOST)] = None
     """Number of a fault that ended the run, or of an alarm that it raised."""
     calibration: Annotated[str, Field(max_length=80)] = ""
     """Identity of a calibration that the runs used."""

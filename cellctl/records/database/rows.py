@@ -77,9 +77,13 @@ def calibration(stored: StoredCalibration) -> CalibrationRow:
     )
 
 
+_GREATEST = 2**63 - 1
+"""Of SQLite, which asks for no greater number."""
+
+
 def existing_run(session: Session, number: int) -> RunRow:
     """The row; raises ``RunUnknown``."""
-    row = session.get(RunRow, number)
+    row = session.get(RunRow, number) if abs(number) <= _GREATEST else None
     if row is None:
         raise RunUnknown(str(number))
     return row

@@ -209,12 +209,13 @@ def test_runs_are_found_by_serial_result_and_calibration(page: Client) -> None:
     }.items():
         found = [run["number"] for run in page.get(f"runs?{query}").json["runs"]]
         assert found == numbers, query
-    for wrong in ("limit=0", "since=2026-11-24T12:00:00", "fault=x", "order=1"):
+    for wrong in ("limit=0", "since=2026-11-24T12:00:00", "fault=x", "order=1", f"before={10**20}"):
         problem(page.get(f"runs?{wrong}"), 422, "invalid")
     run = page.get("runs/1").json
     assert (run["head"]["serial"], run["part"], run["sealed"]) == ("SAT-1", "good", True)
     assert run["phases"][0]["label"] == "measure"
-    problem(page.get("runs/99"), 404, "fault-804")
+    for unknown in (99, 10**20):
+        problem(page.get(f"runs/{unknown}"), 404, "fault-804")
 
 
 def test_files_of_a_run_cannot_become_a_page_of_ours(page: Client, tmp_path: Path) -> None:

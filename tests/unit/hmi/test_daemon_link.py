@@ -9,7 +9,6 @@ from pathlib import Path
 import pytest
 
 from cellctl.api.local_socket.messages import ANSWER_LIMIT, OnBehalf, PageCommand, PlainCommand
-from cellctl.clock import now_s
 from cellctl.hmi.daemon_link import AnswerMissing, DaemonLink
 from cellctl.hmi.hub import Hub
 from tests.unit.hmi.scripted_daemon import snapshot
@@ -54,9 +53,8 @@ def test_after_a_line_it_does_not_understand_it_connects_anew(
 
     async def follow(link: DaemonLink, hub: Hub) -> None:
         following = asyncio.create_task(link.follow())
-        end_s = now_s() + 10.0
-        while not hub.linked and not following.done() and now_s() < end_s:
-            await asyncio.sleep(0.01)
+        while not hub.linked and not following.done():
+            await hub.wait(hub.version, 0.1)
         assert hub.linked
         assert hub.age_s is not None
         following.cancel()

@@ -161,6 +161,8 @@ def test_a_run_that_does_not_exist_is_named(store: RunStore) -> None:
     with pytest.raises(RunUnknown, match="99"):
         store.close_run(99, RunResult.GOOD)
     with pytest.raises(RunUnknown):
+        store.run(10**20)  # more than SQLite can count
+    with pytest.raises(RunUnknown):
         store.add_alarm(99, 501, "x")
 
 

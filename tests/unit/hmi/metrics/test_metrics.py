@@ -142,8 +142,9 @@ def test_a_delivery_that_fails_or_falls_silent_is_told(page: Client, settings: P
         assert value(found, "fleet_entries_waiting") == 12.0
         assert value(found, "fleet_delivered_timestamp_seconds") is None
         assert value(found, "fleet_delivery_failing") == failing
-    (settings.parent / "forwarder" / NAME).write_text("{", encoding="utf-8")
-    assert value(asked(page), "fleet_entries_waiting") is None
+    for damaged in (b"{", b"\xff\x00"):
+        (settings.parent / "forwarder" / NAME).write_bytes(damaged)
+        assert value(asked(page), "fleet_entries_waiting") is None
 
 
 def test_the_page_of_metrics_is_current() -> None:

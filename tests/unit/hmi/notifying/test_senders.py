@@ -1,12 +1,15 @@
 """A message arrives, or the sender says why not."""
 
+import asyncio
 import json
 import socket
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
+from cellctl.hmi.notifying import senders
 from cellctl.hmi.notifying.senders import NotTold, StartedProgram, WebHook
 from tests.unit.hmi.notifying.receiver import told_server
 
@@ -65,3 +68,29 @@ async def test_a_program_that_hangs_is_ended(tmp_path: Path) -> None:
     text = f"import time; open({str(begun)!r}, 'w'); time.sleep(600)"
     with pytest.raises(NotTold, match="still running"):
         await StartedProgram(python(text), allowed_s=1.0).send(MESSAGE)
+
+
+async def test_a_program_that_does_not_even_end_when_it_is_killed_has_not_told(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Any other error would end the one who tells, and with it every message to come."""
+
+    class Stuck:
+        returncode = None
+
+        async def communicate(self, _data: bytes) -> None:
+            await asyncio.sleep(60.0)
+
+        async def wait(self) -> None:
+            await asyncio.sleep(60.0)
+
+        def kill(self) -> None:
+            pass
+
+    async def started(*_command: str, **_how: Any) -> Stuck:
+        return Stuck()
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", started)
+    monkeypatch.setattr(senders, "_KILLED_S", 0.01)
+    with pytest.raises(NotTold, match="still running"):
+        await StartedProgram(["at a share"], allowed_s=0.01).send(MESSAGE)
