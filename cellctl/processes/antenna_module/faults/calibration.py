@@ -54,7 +54,10 @@ class FixedCameraMoved(ReferenceMoved):
     number = 645
     text = "The fixed camera has moved"
     cause = "A loose bracket, a knock, or warming up."
-    remedy = "Fasten it; calibrate it against the robot again; teach the reference again."
+    remedy = (
+        "Fasten it; calibrate it against the robot again; then teach the reference and the plug "
+        "correction again."
+    )
 
 
 class FlangeCameraMoved(ReferenceMoved):

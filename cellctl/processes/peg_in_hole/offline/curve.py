@@ -98,6 +98,8 @@ def _csv_rows(data: bytes) -> list[dict[str, str]]:
         names = [name.strip() for name in next(reader, [])]
         columns_of(names)
         for row in reader:
+            if not row:
+                continue  # an empty line, which many programs write last
             if len(row) != len(names):
                 raise PegCurveInvalid(
                     f"line {reader.line_num}: {len(row)} values for {len(names)} columns"

@@ -203,6 +203,12 @@ def test_without_moments_a_round_part_is_judged_and_a_keyed_one_unknown() -> Non
     assert judge_curve(parse_curve(as_csv(rows[:, :7], kinds, NAMES[:7])), part())[1].inserted
 
 
+def test_empty_lines_are_no_samples() -> None:
+    rows, kinds = inserted(GOOD)
+    written = as_csv(rows, kinds)
+    assert len(parse_curve(written + b"\n\r\n").samples) == len(parse_curve(written).samples)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
