@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 ANSWER_S = 10.0
 PROGRAM_S = 30.0
-_KILLED_S = 5.0
+KILLED_S = 5.0
 
 
 class NotTold(Exception):
@@ -66,10 +66,14 @@ class WebHook:
 class StartedProgram:
     """Starts a program with the message as JSON on its input; exit code 0 means that it is told."""
 
-    def __init__(self, command: Sequence[str], *, allowed_s: float = PROGRAM_S) -> None:
+    def __init__(
+        self, command: Sequence[str], *, allowed_s: float = PROGRAM_S, killed_s: float = KILLED_S
+    ) -> None:
+        """``killed_s``: how long one that was killed is waited for."""
         self.name = command[0]
         self._command = command
         self._allowed_s = allowed_s
+        self._killed_s = killed_s
 
     async def send(self, message: Mapping[str, Any]) -> None:
         """Deliver; a program that takes too long is ended."""
@@ -90,7 +94,7 @@ class StartedProgram:
                 # One that hangs in the kernel, at a share that is away for one, does not end even
                 # so: what it was to tell is not told, and that is all.
                 with contextlib.suppress(TimeoutError):
-                    async with asyncio.timeout(_KILLED_S):
+                    async with asyncio.timeout(self._killed_s):
                         await process.wait()
         if process.returncode:
             raise NotTold(f"exit code {process.returncode}")

@@ -46,10 +46,9 @@ def served(
 
 @pytest.mark.parametrize("strange", STRANGE, ids=range(len(STRANGE)))
 def test_after_a_line_it_does_not_understand_it_connects_anew(
-    tmp_path: Path, strange: bytes, monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, strange: bytes
 ) -> None:
     """Nobody starts a follower that has ended: the page would show the old state for ever."""
-    monkeypatch.setattr("cellctl.hmi.daemon_link.RETRY_S", 0.01)
 
     async def follow(link: DaemonLink, hub: Hub) -> None:
         following = asyncio.create_task(link.follow())

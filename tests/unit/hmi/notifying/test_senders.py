@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from cellctl.hmi.notifying import senders
 from cellctl.hmi.notifying.senders import NotTold, StartedProgram, WebHook
 from tests.unit.hmi.notifying.receiver import told_server
 
@@ -91,6 +90,5 @@ async def test_a_program_that_does_not_even_end_when_it_is_killed_has_not_told(
         return Stuck()
 
     monkeypatch.setattr(asyncio, "create_subprocess_exec", started)
-    monkeypatch.setattr(senders, "_KILLED_S", 0.01)
     with pytest.raises(NotTold, match="still running"):
-        await StartedProgram(["at a share"], allowed_s=0.01).send(MESSAGE)
+        await StartedProgram(["at a share"], allowed_s=0.01, killed_s=0.01).send(MESSAGE)
