@@ -46,12 +46,12 @@ class SensorNoise:
 
     force_n: float
     """Standard deviation of each component, as that of the moment."""
-    moment_nm: float
+    moment_n_m: float
     rng: np.random.Generator
 
     def block(self) -> Array:
         """Shape (n, 6)."""
-        sigma = np.repeat([self.force_n, self.moment_nm], 3)
+        sigma = np.repeat([self.force_n, self.moment_n_m], 3)
         return np.asarray(self.rng.normal(0.0, 1.0, (_BLOCK, 6)) * sigma)
 
 

@@ -110,7 +110,7 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
         made.sensor.begins_s = world.now_s + float(rng.uniform(1.0, 8.0))
 
     async def begin(phase: CyclePhase, _words: str) -> None:
-        tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+        tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_n_m)
         await world.guard.arm(guard_limits(tolerance.limits, SENSING))
 
     inserted, fault = False, ""

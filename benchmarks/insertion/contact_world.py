@@ -57,7 +57,7 @@ class Imperfections:
     repeatability_m: float
     height_m: float
     force_n: float
-    moment_nm: float
+    moment_n_m: float
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,7 +104,7 @@ class ContactWorld:
         self.peaks = ForcePeaks()
         self.late = 0
         self.stream = InsertionStream(self)
-        noise = SensorNoise(imperfections.force_n, imperfections.moment_nm, rng)
+        noise = SensorNoise(imperfections.force_n, imperfections.moment_n_m, rng)
         self.guard = InsertionGuard(noise, made.sensor)
 
     @property

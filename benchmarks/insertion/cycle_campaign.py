@@ -60,7 +60,7 @@ def _written(job: Job, outcome: CycleOutcome) -> Mapping[str, Any]:
         "cycle_s": outcome.cycle_s,
         "unsolved_share": outcome.unsolved_share,
         "force_n": {phase.value: peaks.force_n for phase, peaks in outcome.peaks.items()},
-        "moment_nm": {phase.value: peaks.moment_nm for phase, peaks in outcome.peaks.items()},
+        "moment_nm": {phase.value: peaks.moment_n_m for phase, peaks in outcome.peaks.items()},
     }
 
 

@@ -185,7 +185,7 @@ class _Cycle:
             fault.begins_s = world.now_s + injection.sensor_delay_s
         if phase is CyclePhase.INSERTION:
             outcome.search_s += world.now_s
-        tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+        tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_n_m)
         await world.guard.arm(guard_limits(tolerance.limits, SENSING))
         world.peaks = outcome.peaks.setdefault(phase, ForcePeaks())
 

@@ -118,7 +118,7 @@ def _forces(drawn: RandomTask, outcome: CycleOutcome) -> list[str]:
         for window_ms, what, felt, bound, unit in (
             (20, "force", peaks.force_n, bounds_n[phase], "N"),
             (3, "force", peaks.force_n, limits.fault_n, "N"),
-            (3, "moment", peaks.moment_nm, limits.fault_nm, "N·m"),
+            (3, "moment", peaks.moment_n_m, limits.fault_n_m, "N·m"),
         ):
             if felt[window_ms] > bound and outcome.unsolved_share < _UNSOLVED_SHARE:
                 found.append(

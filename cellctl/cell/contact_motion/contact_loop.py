@@ -76,7 +76,7 @@ class ContactLoop:
     @property
     def felt(self) -> Array:
         """Filtered wrench on the peg about its tip, in the axes of the task, shape (6,)."""
-        return np.concatenate([self.sample.force_n, self.sample.moment_nm])
+        return np.concatenate([self.sample.force_n, self.sample.moment_n_m])
 
     def begin_motion(self, kind: MotionKind) -> None:
         """The ticks from now on belong to another motion."""

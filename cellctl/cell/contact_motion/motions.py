@@ -38,7 +38,7 @@ class ContactSample:
     """(3,), rotation vector against the nominal attitude of the insertion."""
     force_n: Vector
     """(3,) in frame A, filtered as the control law sees it."""
-    moment_nm: Vector
+    moment_n_m: Vector
     """(3,) in frame A, about the tip."""
     force_sigma_n: float
     """Standard deviation of one component of ``force_n``."""

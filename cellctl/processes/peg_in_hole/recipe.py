@@ -81,6 +81,7 @@ class Forces(Section):
     fault_n: _Force
     """The guard stops at it."""
     fault_nm: Annotated[float, Field(gt=0, le=100)]
+    """The same for moments, N·m: newton metres, as the columns of a curve are called, too."""
     withdrawal_n: _Force = 20.0
     """Largest force for drawing the part out again."""
 

@@ -46,7 +46,7 @@ def contact_settings(recipe: PegRecipe, plan: CyclePlan, settings: PegSettings) 
         lever_m=task.fit.peg_radius_m,
         press_n=plan.choice.parameters.press_n.value,
         limit_n=task.limits.fault_n,
-        limit_n_m=task.limits.fault_nm,
+        limit_n_m=task.limits.fault_n_m,
         follow_m=recipe.fit.depth_mm * MM + _FOLLOW_MARGIN_M,
         lost_tick_s=None if lost_ms is None else lost_ms * _MS,
         old_force_s=settings.old_force_ms * _MS,

@@ -15,7 +15,7 @@ class ForcePeaks:
     """Fed with every millisecond; a mean is that of the vectors, not of their lengths."""
 
     force_n: dict[int, float] = field(default_factory=lambda: dict.fromkeys(WINDOWS_MS, 0.0))
-    moment_nm: dict[int, float] = field(default_factory=lambda: dict.fromkeys(WINDOWS_MS, 0.0))
+    moment_n_m: dict[int, float] = field(default_factory=lambda: dict.fromkeys(WINDOWS_MS, 0.0))
     _last: Array = field(default_factory=lambda: np.zeros((_BEFORE, 6)))
 
     def take(self, wrenches: Array) -> None:
@@ -30,6 +30,6 @@ class ForcePeaks:
         for window in WINDOWS_MS:
             means = (summed[_BEFORE + 1 :] - summed[_BEFORE + 1 - window : -window]) / window
             squares = means * means
-            force_n, moment_nm = squares[:, :3].sum(axis=1), squares[:, 3:].sum(axis=1)
+            force_n, moment_n_m = squares[:, :3].sum(axis=1), squares[:, 3:].sum(axis=1)
             self.force_n[window] = max(self.force_n[window], float(force_n.max()) ** 0.5)
-            self.moment_nm[window] = max(self.moment_nm[window], float(moment_nm.max()) ** 0.5)
+            self.moment_n_m[window] = max(self.moment_n_m[window], float(moment_n_m.max()) ** 0.5)

@@ -139,7 +139,7 @@ class SocketScene(World[SocketScenario]):
             "touching": bool(peg.touching),
             "force_n": peg.wrench.tolist(),
             "peak_force_n": _by_window(self.peaks.force_n),
-            "peak_moment_nm": _by_window(self.peaks.moment_nm),
+            "peak_moment_nm": _by_window(self.peaks.moment_n_m),
             "unsolved_steps": peg.failures,
             "unsolved_percent": 100.0 * peg.unsolved_share,
         }

@@ -47,7 +47,7 @@ class Inserted:
     """Sides at which there is one."""
     pushed: tuple[str, ...] = ("+x", "-x", "+y", "-y")
     push_n: float = 6.2
-    turn_nm: tuple[float, ...] = ()
+    turn_n_m: tuple[float, ...] = ()
     """Moments that turns about the axis have met."""
     pull_n: float | None = None
     interval_s: float = 0.01
@@ -64,7 +64,7 @@ class _Recorder:
     tip_mm: Array = field(default_factory=lambda: np.zeros(3))
     motion: int = 0
 
-    def go(self, kind: str, tip_mm: Array, force_n: Array, mz_nm: float = 0.0) -> None:
+    def go(self, kind: str, tip_mm: Array, force_n: Array, mz_n_m: float = 0.0) -> None:
         """A motion of 1 mm/s to a tip, with the force rising evenly to its end."""
         self.motion += 1
         way = float(np.linalg.norm(tip_mm - self.tip_mm))
@@ -73,11 +73,11 @@ class _Recorder:
         for step in range(1, steps + 1):
             share = step / steps
             tip = self.tip_mm + share * (tip_mm - self.tip_mm)
-            self._add(kind, tip, begin_n + share * (force_n - begin_n), share * mz_nm)
+            self._add(kind, tip, begin_n + share * (force_n - begin_n), share * mz_n_m)
         self.tip_mm = tip_mm
 
-    def _add(self, kind: str, tip_mm: Array, force_n: Array, mz_nm: float) -> None:
-        self.rows.append([*tip_mm.tolist(), *force_n.tolist(), 0.0, 0.0, mz_nm])
+    def _add(self, kind: str, tip_mm: Array, force_n: Array, mz_n_m: float) -> None:
+        self.rows.append([*tip_mm.tolist(), *force_n.tolist(), 0.0, 0.0, mz_n_m])
         self.kinds.append((self.motion, kind))
 
 
@@ -98,7 +98,7 @@ def inserted(made: Inserted, seed: int = 1) -> tuple[Array, list[tuple[int, str]
     recorder.go("press", resting, pressed)
     for side in made.pushed:
         _push(recorder, side, resting, pressed)
-    for moment in made.turn_nm:
+    for moment in made.turn_n_m:
         recorder.go("turn", recorder.tip_mm, pressed, moment)
         recorder.go("turn", recorder.tip_mm, pressed, 0.0)
     if made.pull_n is not None:

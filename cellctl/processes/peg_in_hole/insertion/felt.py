@@ -11,7 +11,7 @@ import numpy as np
 
 from cellctl.cell.contact_motion.motions import ContactSample
 
-OUT_OF_BAND_N, OUT_OF_BAND_NM = 3.0, 0.1
+OUT_OF_BAND_N, OUT_OF_BAND_N_M = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""
 _STAYS = 0.7
 _FOOT = 0.2
@@ -28,7 +28,7 @@ class Standing:
     depth_m: float
     axial_n: float
     side_n: float
-    moment_nm: float
+    moment_n_m: float
     yaw_rad: float = 0.0
     """About the axis of the hole: that of a plug whose keys are in their keyways."""
 
@@ -36,27 +36,27 @@ class Standing:
     def of(cls, sample: ContactSample) -> "Standing":
         """The figures of one sample; the moment about z does not count, keys make one."""
         x_n, y_n, z_n = (float(value) for value in sample.force_n)
-        x_nm, y_nm, _ = (float(value) for value in sample.moment_nm)
+        x_n_m, y_n_m, _ = (float(value) for value in sample.moment_n_m)
         depth_m = float(sample.task_position_tip_m[2])
         yaw_rad = float(sample.task_rotation_tip_rad[2])
-        return cls(depth_m, -z_n, hypot(x_n, y_n), hypot(x_nm, y_nm), yaw_rad)
+        return cls(depth_m, -z_n, hypot(x_n, y_n), hypot(x_n_m, y_n_m), yaw_rad)
 
     @property
     def sideways(self) -> bool:
         """Side force or moment out of their band: a jam or a wedge, not a closed hole."""
-        return self.side_n > OUT_OF_BAND_N or self.moment_nm > OUT_OF_BAND_NM
+        return self.side_n > OUT_OF_BAND_N or self.moment_n_m > OUT_OF_BAND_N_M
 
     def wedged_after(self, before: "Standing") -> bool:
         """The feed was lowered since, and side force and moment have stayed: the peg is wedged."""
         if not before.sideways:
             return False
         stays_n = self.side_n > _STAYS * before.side_n
-        return self.sideways and stays_n and self.moment_nm > _STAYS * before.moment_nm
+        return self.sideways and stays_n and self.moment_n_m > _STAYS * before.moment_n_m
 
     def __str__(self) -> str:
         return (
             f"depth {self.depth_m * 1e3:.2f} mm, axial {self.axial_n:.1f} N, side "
-            f"{self.side_n:.1f} N, moment {self.moment_nm:.2f} N·m"
+            f"{self.side_n:.1f} N, moment {self.moment_n_m:.2f} N·m"
         )
 
 

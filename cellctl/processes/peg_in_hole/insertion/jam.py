@@ -17,11 +17,11 @@ LEAST_DEPTH_M = 0.3e-3
 
 
 def jam_ratio(
-    force_n: Array, moment_nm: Array, bore_m: Array, radius_m: float, friction: float
+    force_n: Array, moment_n_m: Array, bore_m: Array, radius_m: float, friction: float
 ) -> Array:
     """1 on the border of a jam, less within, NaN where it cannot be told; shape (n,).
 
-    ``force_n`` and ``moment_nm`` (n, 3) are those of the hole on the peg about its tip, z into the
+    ``force_n`` and ``moment_n_m`` (n, 3) are those of the hole on the peg about its tip, z into the
     hole; ``bore_m`` (n,) is the depth of the tip in the bore, without the chamfers.
     """
     axial_n = -force_n[:, 2]
@@ -32,7 +32,9 @@ def jam_ratio(
     # with: both have the same ratios.
     aside = -force_n[:, :2] / axial_n[:, None]
     # The moment about y belongs to the force along x, and that about x, with the other sign, to y.
-    tilting = np.stack([-moment_nm[:, 1], moment_nm[:, 0]], axis=1) / (radius_m * axial_n[:, None])
+    tilting = np.stack([-moment_n_m[:, 1], moment_n_m[:, 0]], axis=1) / (
+        radius_m * axial_n[:, None]
+    )
     both = tilting + friction * (1 + two_points)[:, None] * aside
     by_moment = np.hypot(*both.T) / two_points
     return np.asarray(np.maximum(friction * np.hypot(*aside.T), by_moment))

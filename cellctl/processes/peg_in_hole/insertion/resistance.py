@@ -53,9 +53,9 @@ def _unexplained_n(
     """Force against the feed beyond what contacts at two points of the walls make by friction."""
     force_n = np.array([sample.force_n for sample in feed])
     # A moment that was not recorded explains nothing.
-    moment_nm = np.nan_to_num(np.array([sample.moment_nm for sample in feed]))
+    moment_n_m = np.nan_to_num(np.array([sample.moment_n_m for sample in feed]))
     bore_m = depth_m - fit.hole_chamfer_m - fit.peg_chamfer_m
-    walls = jam_ratio(force_n, moment_nm, bore_m, fit.peg_radius_m, friction)
+    walls = jam_ratio(force_n, moment_n_m, bore_m, fit.peg_radius_m, friction)
     return np.asarray(-force_n[:, 2] * (1.0 - np.clip(np.nan_to_num(walls), 0.0, 1.0)))
 
 

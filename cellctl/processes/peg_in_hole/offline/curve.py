@@ -71,7 +71,7 @@ def parse_curve(data: bytes, *, force_on_hole: bool = False) -> PegCurve:
     tip_m = np.stack([_values(rows, columns[name]) for name in (X, Y, DEPTH)], axis=1)
     sign = -1.0 if force_on_hole else 1.0
     force_n = sign * np.stack([_values(rows, columns[name]) for name in FORCES], axis=1)
-    moment_nm = sign * np.stack(
+    moment_n_m = sign * np.stack(
         [
             _values(rows, columns[name]) if name in columns else np.full(len(rows), np.nan)
             for name in MOMENTS
@@ -80,7 +80,7 @@ def parse_curve(data: bytes, *, force_on_hole: bool = False) -> PegCurve:
     )
     samples = tuple(
         ContactSample(float(at_s), tip, np.zeros(3), force, moment, 0.0)
-        for at_s, tip, force, moment in zip(time_s, tip_m, force_n, moment_nm, strict=True)
+        for at_s, tip, force, moment in zip(time_s, tip_m, force_n, moment_n_m, strict=True)
     )
     return PegCurve(samples, _motions(rows))
 

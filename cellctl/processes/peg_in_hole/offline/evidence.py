@@ -20,7 +20,7 @@ from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
 from cellctl.processes.peg_in_hole.offline.split import CurveParts, by_motions
 from cellctl.processes.peg_in_hole.offline.task_file import TaskOfCurve
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
-from cellctl.processes.peg_in_hole.verdict.holding import MET_NM
+from cellctl.processes.peg_in_hole.verdict.holding import MET_N_M
 from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, capture_of
 
 _TOO_DEEP = 3.0
@@ -60,12 +60,12 @@ def _turns_that_resist(parts: CurveParts) -> int | None:
     not recorded."""
     if parts.before_turns is None or len(parts.turned) < 2:
         return None
-    free_nm = float(parts.before_turns.moment_nm[2])
+    free_n_m = float(parts.before_turns.moment_n_m[2])
     signs = set()
     for samples in parts.turned:
-        turned_nm = np.array([float(sample.moment_nm[2]) for sample in samples]) - free_nm
-        signs |= set(np.sign(turned_nm[np.abs(turned_nm) > MET_NM]).tolist())
-    return None if np.isnan(free_nm) else len(signs)
+        turned_n_m = np.array([float(sample.moment_n_m[2]) for sample in samples]) - free_n_m
+        signs |= set(np.sign(turned_n_m[np.abs(turned_n_m) > MET_N_M]).tolist())
+    return None if np.isnan(free_n_m) else len(signs)
 
 
 def _held_pull_n(parts: CurveParts) -> float | None:

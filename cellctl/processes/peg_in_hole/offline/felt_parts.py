@@ -80,7 +80,7 @@ def _mean(block: Samples) -> ContactSample:
         time_s=float(np.mean([one.time_s for one in block])),
         task_position_tip_m=np.mean([one.task_position_tip_m for one in block], axis=0),
         force_n=np.mean([one.force_n for one in block], axis=0),
-        moment_nm=np.mean([one.moment_nm for one in block], axis=0),
+        moment_n_m=np.mean([one.moment_n_m for one in block], axis=0),
     )
 
 
@@ -138,6 +138,6 @@ def _before_pushes(after: Samples, first: int | None) -> ContactSample | None:
 
 def _turned(rest: Samples) -> tuple[Samples, ...]:
     """Both senses of the moment about the axis; none where no moment is known."""
-    if not rest or any(np.isnan(sample.moment_nm[2]) for sample in rest):
+    if not rest or any(np.isnan(sample.moment_n_m[2]) for sample in rest):
         return ()
     return (rest, rest)

@@ -117,7 +117,7 @@ class ForceLimits:
     search_n: float
     insertion_n: float
     fault_n: float
-    fault_nm: float
+    fault_n_m: float
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ class LiveFigures(TickObserver):
     def take(self, tick: ContactTick) -> None:
         """See ``TickObserver``."""
         sample = tick.sample
-        felt = np.concatenate([sample.force_n, sample.moment_nm])
+        felt = np.concatenate([sample.force_n, sample.moment_n_m])
         self._greatest = np.maximum(self._greatest, np.abs(felt))
         if sample.time_s - self._shown_s < _EVERY_S:
             return

@@ -42,7 +42,7 @@ class TickLog(TickObserver):
                 sample.time_s - self.begun_s,
                 *(sample.task_position_tip_m * _M_TO_MM).tolist(),
                 *sample.force_n.tolist(),
-                *sample.moment_nm.tolist(),
+                *sample.moment_n_m.tolist(),
                 tick.speed_m_s * _M_TO_MM,
                 float(tick.at_bound),
                 tick.age_s * _S_TO_MS,

@@ -20,7 +20,7 @@ from cellctl.plot_style import (
     style,
     to_svg,
 )
-from cellctl.processes.peg_in_hole.insertion.felt import OUT_OF_BAND_N, OUT_OF_BAND_NM
+from cellctl.processes.peg_in_hole.insertion.felt import OUT_OF_BAND_N, OUT_OF_BAND_N_M
 
 _POINTS = {
     "face": (MUTED, "."),
@@ -89,12 +89,12 @@ def insertion_picture(
         across_n = np.hypot(ticks["fx_n"], ticks["fy_n"])
         force.plot(*envelope(depth, across_n), **line(SECOND), linewidth=0.8, label="√(Fx² + Fy²)")
         force.plot(*envelope(depth, -ticks["fz_n"]), color=ACCENT, linewidth=0.9, label="−Fz")
-        across_nm = np.hypot(ticks["mx_nm"], ticks["my_nm"])
-        moment.plot(*envelope(depth, across_nm), **line(SECOND), linewidth=0.8)
+        across_n_m = np.hypot(ticks["mx_nm"], ticks["my_nm"])
+        moment.plot(*envelope(depth, across_n_m), **line(SECOND), linewidth=0.8)
         # Of a peg that slides in freely: beyond it the insertion takes side force and moment for a
         # jam, and not for a closed hole.
         force.axhspan(0.0, OUT_OF_BAND_N, color=GOOD_FILL, zorder=0, label="free peg, across")
-        moment.axhspan(0.0, OUT_OF_BAND_NM, color=GOOD_FILL, zorder=0)
+        moment.axhspan(0.0, OUT_OF_BAND_N_M, color=GOOD_FILL, zorder=0)
         if limit_n is not None:
             force.axhline(limit_n, color=LIMIT, linestyle="--", linewidth=0.8, label="limit")
         for axes in others:

@@ -109,9 +109,9 @@ def _jam(record: RunRecord, ticks: ReadTicks) -> Array | None:
         return None
     fit, values = part.fit, ticks.values
     force_n = np.stack([values[name] for name in ("fx_n", "fy_n", "fz_n")], axis=1)
-    moment_nm = np.stack([values[name] for name in ("mx_nm", "my_nm", "mz_nm")], axis=1)
+    moment_n_m = np.stack([values[name] for name in ("mx_nm", "my_nm", "mz_nm")], axis=1)
     bore_mm = values["depth_mm"] - fit.hole_chamfer_mm - fit.peg_chamfer_mm
-    ratio = jam_ratio(force_n, moment_nm, bore_mm * MM, fit.peg_radius_mm * MM, fit.friction)
+    ratio = jam_ratio(force_n, moment_n_m, bore_mm * MM, fit.peg_radius_mm * MM, fit.friction)
     if not ticks.kinds:
         return ratio
     # The pushes of the verdict go to the walls on purpose.

@@ -48,6 +48,6 @@ async def recorded_loop(
 async def watch_phase(run: PegRun, motions: StreamedContact, phase: CyclePhase) -> None:
     """Have the guard watch the limits of a phase; the arm stands in its stream meanwhile."""
     task = run.facts.plan.task
-    tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_nm)
+    tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_n_m)
     run.board.update(force_limit_n=tolerance.force_n)
     await watch_closer(motions, run.facts.cell.arm, tolerance)

@@ -9,7 +9,7 @@ from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _PRESS_N = 2.0
 _TURN_RAD_S = radians(1.0)
-MET_NM = 0.4
+MET_N_M = 0.4
 """Far above what friction at the wall makes, far below what bends a key."""
 _BEYOND_RAD = radians(1.5)
 """What arm and fingers yield under that moment, and what the attitude is uncertain by."""
@@ -27,11 +27,11 @@ async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeomet
     begun = (await motions.press(_PRESS_N, _SETTLE_S, never)).last
     upright = np.array([0.0, 0.0, float(begun.task_rotation_tip_rad[2])])
     # Only the change counts: the moment that is there before the turn is none of the keys.
-    free_nm = float(begun.moment_nm[2])
+    free_n_m = float(begun.moment_n_m[2])
     hold = np.array([0.0, 0.0, _PRESS_N])
 
     def met(sample: ContactSample) -> bool:
-        return abs(float(sample.moment_nm[2]) - free_nm) > MET_NM
+        return abs(float(sample.moment_n_m[2]) - free_n_m) > MET_N_M
 
     resisted = 0
     for sign in (1.0, -1.0):

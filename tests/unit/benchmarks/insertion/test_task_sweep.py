@@ -13,7 +13,7 @@ from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from fakes.scenes.socket.peaks import ForcePeaks
 
 SEEDS = range(1, 200)
-FORCE_N, MOMENT_NM = 9.0, 0.1
+FORCE_N, MOMENT_N_M = 9.0, 0.1
 
 
 def _drawn() -> list[RandomTask]:
@@ -52,7 +52,7 @@ def test_the_cell_is_told_the_truth_of_a_task_that_is_as_told() -> None:
 
 def _outcome(**changes: object) -> CycleOutcome:
     peaks = {
-        phase: ForcePeaks(dict.fromkeys((1, 3, 20), FORCE_N), dict.fromkeys((1, 3, 20), MOMENT_NM))
+        phase: ForcePeaks(dict.fromkeys((1, 3, 20), FORCE_N), dict.fromkeys((1, 3, 20), MOMENT_N_M))
         for phase in CyclePhase
     }
     outcome = CycleOutcome(1, called_good=True, seated=True, cycle_s=40.0, peaks=peaks)

@@ -83,7 +83,7 @@ class ElasticWorld:
     delay_ticks: int = 2
     lag_s: float = 5e-3
     sigma_n: float = 0.0
-    sigma_nm: float = 0.0
+    sigma_n_m: float = 0.0
     now_s: float = 100.0
     sent: list[Array] = field(default_factory=list)
     forces: list[Array] = field(default_factory=list)
@@ -143,7 +143,7 @@ class WorldGuard(TinyGuard):
         turned = Rotation.from_rotvec(self._world.tip[3:]).as_matrix()
         # Rows times a matrix: the inverse rotation.
         felt = np.ravel(wrench.reshape(2, 3) @ turned @ _TASK_R_NOMINAL)
-        sigma = np.repeat([self._world.sigma_n, self._world.sigma_nm], 3)
+        sigma = np.repeat([self._world.sigma_n, self._world.sigma_n_m], 3)
         self._times.append(time_s)
         self._wrenches.append(felt + self._rng.normal(0.0, 1.0, 6) * sigma)
         if np.abs(wrench[:3]).max() > self._greatest_n and self.trip is None:

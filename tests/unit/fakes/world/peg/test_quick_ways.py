@@ -41,8 +41,8 @@ def test_peaks_are_those_of_the_means_of_all_samples(at_once: int) -> None:
             padded[end - window : end].sum(axis=0) / window
             for end in range(len(before) + 1, len(padded) + 1)
         ]
-        most_n, most_nm = (
+        most_n, most_n_m = (
             max(float(np.linalg.norm(m[part])) for m in means) for part in (slice(3), slice(3, 6))
         )
         assert peaks.force_n[window] == pytest.approx(most_n, rel=1e-12)
-        assert peaks.moment_nm[window] == pytest.approx(most_nm, rel=1e-12)
+        assert peaks.moment_n_m[window] == pytest.approx(most_n_m, rel=1e-12)

@@ -42,9 +42,9 @@ def test_two_sliding_points_are_on_the_border(
 def test_a_push_along_the_axis_beside_it_is_within(share: float, azimuth_rad: float) -> None:
     depth_m = 5e-3
     two = depth_m / (2 * R_M * MU)
-    moment_nm = share * two * R_M * 10.0
-    x_nm, y_nm = moment_nm * np.cos(azimuth_rad), moment_nm * np.sin(azimuth_rad)
-    assert ratio((0.0, 0.0, -10.0, x_nm, y_nm, 0.0), depth_m) == pytest.approx(share, abs=1e-9)
+    moment_n_m = share * two * R_M * 10.0
+    x_n_m, y_n_m = moment_n_m * np.cos(azimuth_rad), moment_n_m * np.sin(azimuth_rad)
+    assert ratio((0.0, 0.0, -10.0, x_n_m, y_n_m, 0.0), depth_m) == pytest.approx(share, abs=1e-9)
 
 
 def test_a_side_force_beyond_the_cone_of_friction_is_outside() -> None:

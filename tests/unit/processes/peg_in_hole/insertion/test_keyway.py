@@ -29,7 +29,7 @@ class KeyedMotions(KinematicMotions):
         super().__init__(task, Truth(OVER_THE_HOLE, np.zeros(2)), np.random.default_rng(0))
         self.keyway_rad = keyway_rad
         self.deepest_m = KEYS.depth_m
-        self.moment_nm = 0.0
+        self.moment_n_m = 0.0
 
     def _free(self) -> bool:
         if self.keyway_rad is None:
@@ -46,10 +46,10 @@ class KeyedMotions(KinematicMotions):
         for at_rad in np.linspace(self.rotation_rad[2], task_rotation_tip_rad[2], 50):
             self.rotation_rad = np.array([0.0, 0.0, at_rad])
             in_keyway = self.position_m[2] > KEYS.depth_m + 1e-3
-            self.moment_nm = 1.0 if in_keyway and not self._free() else 0.0
+            self.moment_n_m = 1.0 if in_keyway and not self._free() else 0.0
             if not in_keyway and self._free():
                 self.position_m[2] = KEYS.depth_m + 0.3e-3
-            sample = replace(self._sample(5.0), moment_nm=np.array([0.0, 0.0, self.moment_nm]))
+            sample = replace(self._sample(5.0), moment_n_m=np.array([0.0, 0.0, self.moment_n_m]))
             if until is not None and until(sample):
                 return ContactMotion(Ended.CONDITION, (sample,))
         return ContactMotion(Ended.TRAVEL, (sample,))

@@ -16,7 +16,7 @@ STIFFNESS_N_M, FRICTION = 1e5, 0.2
 MM = 1e-3
 
 
-def felt(points: Sequence[tuple[float, float]], *, moment_nm: float = 0.0) -> list[ContactSample]:
+def felt(points: Sequence[tuple[float, float]], *, moment_n_m: float = 0.0) -> list[ContactSample]:
     """A feed along depths (mm) and forces against it (N), straight between them."""
     depth_mm = np.arange(points[0][0], points[-1][0], 5e-3)
     axial_n = np.interp(depth_mm, *np.array(points).T)
@@ -27,7 +27,7 @@ def felt(points: Sequence[tuple[float, float]], *, moment_nm: float = 0.0) -> li
             np.array([0.0, 0.0, depth * MM]),
             np.zeros(3),
             np.array([0.0, 0.0, -force]),
-            np.array([0.0, moment_nm, 0.0]),
+            np.array([0.0, moment_n_m, 0.0]),
             0.1,
         )
         for number, (depth, force) in enumerate(zip(depth_mm, axial_n + noise_n, strict=True))
@@ -65,7 +65,7 @@ def test_a_part_that_slips_to_a_stop_is_held_back_by_as_much(grip_n: float, way_
 def test_friction_at_two_points_explains_itself() -> None:
     points = [(1.0, 0.5), (4.0, 6.0), (11.8, 6.0), (11.92, 18.0)]
     # As much moment as two contacts of a jam have at 6 N in the middle of the way.
-    free, tilted = held_mm(felt(points)), held_mm(felt(points, moment_nm=0.17))
+    free, tilted = held_mm(felt(points)), held_mm(felt(points, moment_n_m=0.17))
     assert free > 7.0
     assert tilted < 0.1
 
@@ -85,5 +85,5 @@ def test_a_chamfer_does_not_count() -> None:
 
 
 def test_a_moment_that_was_not_recorded_explains_nothing() -> None:
-    feed = [replace(one, moment_nm=np.full(3, np.nan)) for one in felt(slipping(8.7, 0.85))]
+    feed = [replace(one, moment_n_m=np.full(3, np.nan)) for one in felt(slipping(8.7, 0.85))]
     assert held_mm(feed) == pytest.approx(0.85, abs=0.1)

@@ -23,7 +23,7 @@ from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegVer
 from tests.rigs.insertion.curves import NAMES, TASK, Inserted, as_csv, inserted
 
 GOOD = Inserted()
-KEYED = replace(GOOD, turn_nm=(0.6, -0.6), pull_n=9.0)
+KEYED = replace(GOOD, turn_n_m=(0.6, -0.6), pull_n=9.0)
 
 
 def part(made: Inserted = GOOD, **changed: Any) -> JudgedPart:
@@ -35,7 +35,7 @@ def part(made: Inserted = GOOD, **changed: Any) -> JudgedPart:
         "depth_mm": made.hole_mm,
     }
     seat = {"least_n": 5.0, "most_n": 30.0, "grip_n": 60.0}
-    if made.turn_nm:
+    if made.turn_n_m:
         fit["keys"] = {"depth_mm": 4.0, "window_deg": 1.0, "uncertainty_deg": 2.0}  # type: ignore[assignment]
     if made.pull_n is not None:
         seat["pull_n"] = 8.0
@@ -78,7 +78,7 @@ BAD = (
     (replace(GOOD, walls=("+x", "+y", "-y")), 593),
     (replace(GOOD, lift_by_mm=0.2), 593),
     (replace(GOOD, seat_n=3.0), 592),
-    (replace(KEYED, turn_nm=(0.6, 0.1)), 595),
+    (replace(KEYED, turn_n_m=(0.6, 0.1)), 595),
     (replace(KEYED, pull_n=1.0), 595),
 )
 
@@ -110,7 +110,7 @@ def test_what_was_not_pushed_is_unknown(pushed: tuple[str, ...], named: bool) ->
 
 @pytest.mark.parametrize("named", [True, False])
 def test_a_turn_that_was_not_made_and_a_grip_that_nobody_knows_are_unknown(named: bool) -> None:
-    unturned = replace(KEYED, turn_nm=())
+    unturned = replace(KEYED, turn_n_m=())
     assert judged(unturned, named=named, told=part(KEYED)).verdict is not PegVerdict.INSERTED
     nobody = part(GOOD, seat={"least_n": 5.0, "most_n": 30.0})
     judgement = judged(GOOD, named=named, told=nobody)

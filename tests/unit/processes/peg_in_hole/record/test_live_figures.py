@@ -10,13 +10,13 @@ from cellctl.processes.peg_in_hole.record.live_figures import LiveFigures
 from cellctl.runtime.progress import Progress, ProgressBoard
 
 
-def tick(time_s: float, depth_m: float, force_z_n: float, moment_x_nm: float) -> ContactTick:
+def tick(time_s: float, depth_m: float, force_z_n: float, moment_x_n_m: float) -> ContactTick:
     sample = ContactSample(
         time_s,
         np.array([0.5e-3, -0.2e-3, depth_m]),
         np.radians([1.0, 0.0, -2.0]),
         np.array([1.0, 0.0, force_z_n]),
-        np.array([moment_x_nm, 0.0, 0.0]),
+        np.array([moment_x_n_m, 0.0, 0.0]),
         0.1,
     )
     return ContactTick(sample, np.zeros(6), 0.01, 0.001, Pace.STEP, 0, 1, MotionKind.FEED)

@@ -29,7 +29,7 @@ def probe_in(world: ElasticWorld, stiffness_n_m: float, chamfer_mm: float) -> To
 def standing_in(part: Part, *, at_m: tuple[float, float, float]) -> ElasticWorld:
     tip = np.array([*at_m, 0.0, 0.0, 0.0])
     return ElasticWorld(
-        part, period_s=8e-3, delay_ticks=1, lag_s=5e-3, sigma_n=0.2, sigma_nm=0.005, tip=tip
+        part, period_s=8e-3, delay_ticks=1, lag_s=5e-3, sigma_n=0.2, sigma_n_m=0.005, tip=tip
     )
 
 
