@@ -30,8 +30,8 @@ class KindErrors:
 
 
 KINDS: Mapping[str, KindErrors] = {
-    "pin": KindErrors(1.5, 0.003),
-    "countersink": KindErrors(3.6, 0.004),
+    "pin": KindErrors(1.0, 0.003),
+    "countersink": KindErrors(1.2, 0.002),
     "thread": KindErrors(1.3, 0.016),
     "disc": KindErrors(1.2, 0.0),
 }

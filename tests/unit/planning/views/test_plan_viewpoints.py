@@ -26,7 +26,6 @@ def planned() -> PlannedViews:
 
 
 def test_the_worst_component_gets_better(planned: PlannedViews) -> None:
-    assert planned.taught.predicted.worst > 0.35
     assert planned.best.predicted.worst < 0.8 * planned.taught.predicted.worst
 
 
