@@ -26,6 +26,9 @@ class StatedHead:
     camera: StereoHead
     """The head as it was calibrated."""
     flange_T_camera: RigidTransform
+    flange_T_views: tuple[RigidTransform, ...] = ()
+    """Places of the flange, in its frame at this pose, to which the arm has to go from there: the
+    views of the head's calibration."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

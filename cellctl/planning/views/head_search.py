@@ -17,7 +17,11 @@ from cellctl.planning.views.looks import HeadLook, aim_at, left_T_middle, look_o
 from cellctl.planning.views.prediction import part_in_cell
 from cellctl.planning.views.seeing import SeenHoles, why_unseen
 from cellctl.planning.views.sight import Sights
-from cellctl.planning.views.standing import standing_at
+from cellctl.planning.views.standing import (
+    VIEWS_OUT_OF_REACH,
+    reaches_views,
+    standing_at,
+)
 from cellctl.planning.ways.polyline import joints_at
 
 
@@ -110,6 +114,10 @@ class HeadSearch:
             if standing.joints_rad is not None:
                 found = Viewpoint(look, standing.joints_rad, camera)
                 why = self.hidden(found, {})
+                if why is None and not reaches_views(
+                    arm, found.joints_rad, self.head.flange_T_views
+                ):
+                    why = VIEWS_OUT_OF_REACH
                 if why is None:
                     return found
         self.refused[why or ""] += 1

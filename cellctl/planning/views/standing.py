@@ -1,5 +1,6 @@
 """Whether an arm can hold its head somewhere: reach, margins of the joints, room around it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from cellctl.planning.scene.surroundings import Surroundings
 OUT_OF_REACH = "the arm does not reach there"
 NEAR_A_LIMIT = "a joint or the flange is too near to its limit"
 SINGULAR = "the arm is near a singular pose"
+VIEWS_OUT_OF_REACH = "a view of the calibration is out of reach from there"
 _LEAST_SINGULAR = 0.08
 """Least singular value of the Jacobian with turns over half a metre. At the wrist's and the elbow's
 singular poses it is 0; 0.08 means that the flange's 250 mm/s ask at most 180 °/s of a joint."""
@@ -50,6 +52,19 @@ def standing_at(
         gap = around.narrowest(joints_rad)
         return HeldHead(None, f"{gap.first} is too near to {gap.second}")
     return HeldHead(joints_rad, None)
+
+
+def reaches_views(
+    arm: PlannedArm, joints_rad: Array, flange_T_views: Sequence[RigidTransform]
+) -> bool:
+    """Whether the arm, folded as at joints of shape (6,), reaches places seen from its flange."""
+    base_T_flange = arm.base_T_flange(joints_rad)
+    for flange_T_view in flange_T_views:
+        view = (base_T_flange * flange_T_view).as_matrix()
+        at_view_rad = joints_reaching(arm.chain, view, joints_rad)
+        if at_view_rad is None or arm.refusal(at_view_rad) is not None:
+            return False
+    return True
 
 
 def _turned(arm: PlannedArm, base_T_flange: Array, near_rad: Array) -> Array:

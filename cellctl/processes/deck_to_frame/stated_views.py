@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -12,12 +13,14 @@ from cellctl.config.stated.moves import StatedPlace
 from cellctl.config.stated.views import StatedHead, StatedMeasurement, StatedPart
 from cellctl.errors.config import HeadNotDescribed
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
+from cellctl.procedures.stereo_head import flange_poses
 from cellctl.processes.deck_to_frame.arms_in_roles import ArmsInRoles
 from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_record
 from cellctl.processes.deck_to_frame.poses.pose_correction import Thresholds
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE, HEAD_1, HEAD_2, HOME, MEASURING
+from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.camera.stereo_head import StereoHead, stereo_head_from_json
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.features.hole import Hole
@@ -90,7 +93,10 @@ def _head(arms: ArmsInRoles, folder: Path, role: str) -> StatedHead:
         raise HeadNotDescribed(f"stereo_cameras.{name}: flange_T_camera is missing")
     mounted = pose_from_xyzabc(config.flange_T_camera)
     camera = _camera(arms.cell, folder, role)
-    return StatedHead(name, arms.heads[name], MEASURING, camera, mounted)
+    settings = cast(DeckSettings, arms.cell.processes[arms.recipe.process])
+    # Procedures 101 and 102 tilt the head about its board from there.
+    views = flange_poses(RigidTransform.identity(), mounted, settings.stereo_views)
+    return StatedHead(name, arms.heads[name], MEASURING, camera, mounted, tuple(views[1:]))
 
 
 def _camera(cell: CellConfig, folder: Path, role: str) -> StereoHead:

@@ -3,12 +3,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.config import load_cell
 from cellctl.errors.config import NoViewpoint
 from cellctl.planning.views.gains import gains
 from cellctl.planning.views.looks import HeadLook
 from cellctl.planning.views.plan_viewpoints import PlannedViews, ViewpointPlan
+from cellctl.planning.views.standing import reaches_views
 from cellctl.planning.views.view_text import gain_line, views_lines
 from cellctl.planning.views.write_viewpoints import with_viewpoints_written
 from tests.unit.planning.deck_cell import DECK
@@ -38,6 +40,18 @@ def test_both_heads_stand_free_beside_each_other(planned: PlannedViews) -> None:
     camera = SCENE.arms["aux_2"].cell_T_base * flange * mounted
     between = camera.inv() * planned.best.viewpoints[1].cell_T_camera
     assert np.allclose(between.as_matrix(), np.eye(4), atol=1e-7)
+
+
+def test_from_where_a_head_is_to_measure_it_can_be_calibrated(planned: PlannedViews) -> None:
+    for head, viewpoint in zip(measurement().heads, planned.best.viewpoints, strict=True):
+        assert len(head.flange_T_views) == 23
+        arm = SCENE.arms[head.robot]
+        assert reaches_views(arm, viewpoint.joints_rad, head.flange_T_views)
+    far = (RigidTransform.from_translation([0.0, 0.0, -3.0]),)
+    stated = measurement()
+    one, two = (replace(head, flange_T_views=far) for head in stated.heads)
+    with pytest.raises(NoViewpoint, match="a view of the calibration is out of reach"):
+        ViewpointPlan(SCENE, replace(stated, heads=(one, two)), TILTED[:1]).search()
 
 
 def test_the_text_names_what_limits_and_what_would_help(planned: PlannedViews) -> None:
