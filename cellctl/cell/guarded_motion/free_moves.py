@@ -7,10 +7,14 @@ import numpy as np
 
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
-from cellctl.cell.guarded_motion.guarded_moves import TARE_S, WrenchTolerance, guarded
+from cellctl.cell.guarded_motion.guarded_moves import (
+    TARE_S,
+    WrenchTolerance,
+    guarded,
+    leave_weight_to_tare,
+)
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import Array
 
 LEVER_M = 0.5
@@ -32,7 +36,7 @@ async def guarded_section(arm: GuardedRobot, tolerance: WrenchTolerance) -> Asyn
     await guard.set_wrench_frame(None)
     weight_n = 0.0
     if not guard.gravity_compensated:
-        await guard.set_gravity_compensation(GravityCompensation.none())
+        await leave_weight_to_tare(guard)
         # A load that still swings would be tared with the force of its swing, and that force would
         # be missing from the limit on one side.
         await settle(guard)

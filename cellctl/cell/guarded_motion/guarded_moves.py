@@ -15,6 +15,8 @@ from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.base import CellError
 from cellctl.errors.robot import MotionAborted, NotRearmed
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import Six
 from cellctl.guard.report import GuardTrip
 from cellctl.interfaces import Robot, RobotMode, RobotState
@@ -38,11 +40,15 @@ class WrenchTolerance:
 
     force_n: float
     moment_n_m: float
+    axial_n: float | None = None
+    """Along z of the frame, where that differs: a part that is drawn out of what it was pressed
+    into changes the force by the press that goes, and by the pull that comes."""
 
     @property
     def limits(self) -> Six:
         """The tolerance of each component: N, N, N, N·m, N·m, N·m."""
-        return (*(self.force_n,) * 3, *(self.moment_n_m,) * 3)
+        axial_n = self.force_n if self.axial_n is None else self.axial_n
+        return (self.force_n, self.force_n, axial_n, *(self.moment_n_m,) * 3)
 
 
 @asynccontextmanager
@@ -53,8 +59,9 @@ async def guarded_moves(
 
     The limits are on the *change* since then: wherever the arm stands, in contact or not, a move
     that is free changes nothing but inertia. ``flange_T_wrench`` is the frame in which the limits
-    hold. A trip stops the robot and raises its fault, and the guard stays latched. Raises
-    ``NotSettled``, ``GuardRefused`` and what the moves raise.
+    hold. A trip stops the robot and raises its fault, and the guard stays latched. A weight that
+    is not subtracted is part of the zero: a move that turns it is one that changes the force.
+    Raises ``NotSettled``, ``GuardRefused`` and what the moves raise.
     """
     guard = arm.guard
 
@@ -65,6 +72,7 @@ async def guarded_moves(
 
     # Frame and tare cannot be changed while armed: the signal would jump against the limits.
     await guard.disarm()
+    await leave_weight_to_tare(guard)
     await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
     await settle(guard)
     await guard.tare(TARE_S)
@@ -74,6 +82,16 @@ async def guarded_moves(
         # watching may end.
         yield move
         await guard.disarm()
+
+
+async def leave_weight_to_tare(guard: GuardClient) -> None:
+    """Have the guard subtract nothing, unless it already subtracts a weight.
+
+    A new guard refuses to be armed before somebody has said what hangs on its sensor. After a
+    restart the first move may be the one out of a station, and there nobody has.
+    """
+    if not guard.gravity_compensated:
+        await guard.set_gravity_compensation(GravityCompensation.none())
 
 
 async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip | None:

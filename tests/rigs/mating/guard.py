@@ -33,13 +33,9 @@ class WorldGuard:
         request_stop: Callable[[float], None],
     ) -> None:
         self.settling = Settling()
-        self._monitor = WrenchMonitor(_nine(flange_T_sensor), has_channel=True)
-        self._monitor.channel_up = True
-        self._monitor.contact.set_gravity_compensation(
-            [(float(x), float(y), float(z)) for x, y, z in compensation.A],
-            [float(value) for value in compensation.b],
-            compensation.base_down,
-        )
+        self._flange_R_sensor = _nine(flange_T_sensor)
+        self.begin_anew()
+        self._compensate(compensation)
         self._request_stop = request_stop
         self._flange: RigidTransform | None = None
         self._invalid = 0
@@ -47,6 +43,12 @@ class WorldGuard:
         self._stop_s: float | None = None
         self._last: GuardSample | None = None
         self._kept = np.zeros((SLOTS, 13))
+
+    def begin_anew(self) -> None:
+        """A new process in its place: nothing is set."""
+        self._monitor = WrenchMonitor(self._flange_R_sensor, has_channel=True)
+        self._monitor.channel_up = True
+        self.gravity_compensated = False
 
     # -- what the process does ------------------------------------------------------------------
     def tick(
@@ -90,10 +92,6 @@ class WorldGuard:
     def trip(self) -> GuardTrip | None:
         return self._monitor.trip
 
-    @property
-    def gravity_compensated(self) -> bool:
-        return True
-
     def health(self) -> GuardHealth:
         return GuardHealth(alive=True, stop_channel_up=True, sensor=self._health)
 
@@ -107,6 +105,19 @@ class WorldGuard:
         return GuardSamples(
             part[:, 0], part[:, 1:7], part[:, 7:], np.zeros(len(part)), overrun=False
         )
+
+    async def set_gravity_compensation(self, compensation: GravityCompensation) -> None:
+        self._monitor.require_unarmed()
+        self._compensate(compensation)
+        self._monitor.signal_jumped()
+
+    def _compensate(self, compensation: GravityCompensation) -> None:
+        self._monitor.contact.set_gravity_compensation(
+            [(float(x), float(y), float(z)) for x, y, z in compensation.A],
+            [float(value) for value in compensation.b],
+            compensation.base_down,
+        )
+        self.gravity_compensated = bool(compensation.A.any())
 
     async def set_wrench_frame(self, sensor_T_wrench: RigidTransform | None) -> None:
         self._monitor.require_unarmed()

@@ -9,7 +9,6 @@ from cellctl.cell.guarded_motion.guarded_moves import GuardedMove, WrenchToleran
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s
-from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.limits import DEFAULT_FILTER_S
 from cellctl.processes.deck_to_frame.poses.pose_limits import is_near
@@ -47,9 +46,6 @@ async def lift_off(cell: DeckCell) -> None:
     if recipe is None:
         return
     _log.info("lifting off the station")
-    if not cell.guard.gravity_compensated:
-        # The arm moves straight without turning, so the tare alone takes the weight off.
-        await cell.guard.set_gravity_compensation(GravityCompensation.none())
     mating = recipe.mating
     # What a mating has left may go without a fault: never more than its own limits.
     tolerance = WrenchTolerance(mating.limit_force_n, 2.0 * mating.max_moment_n_m)
