@@ -20,7 +20,8 @@ _TOUCH_N = 3.0
 async def stand_off(planned: Planned) -> OverSocket:
     """Beside the socket's panel no straight way is free: up, across, then down slowly.
 
-    Raises ``TareImplausible`` when something but gripper and module is felt.
+    Raises ``PartLost`` for a module that was lost since it was picked, and ``TareImplausible`` when
+    something but gripper and module is felt.
     """
     run = planned.run
     way = way_of(planned)
@@ -34,6 +35,8 @@ async def stand_off(planned: Planned) -> OverSocket:
     await run.recorder.pose("stand_off", keys.COMMANDED, "base", "flange", target)
     reached = run.cell.arm.robot.state().base_T_flange
     await run.recorder.pose("stand_off", keys.REPORTED, "base", "flange", reached)
+    # Before the tare: a light module is less than what may be felt beside it.
+    await run.cell.gripper.confirm_part()
     await _tare(planned)
     return OverSocket(
         run,

@@ -22,7 +22,8 @@ _AXIAL = 2
 async def verify(inserted: Inserted) -> Released:
     """Pull, release, leave, look.
 
-    Raises ``PlugNotHeld`` or ``MovedOnRelease``: the module stays where it is, for the operator.
+    Raises ``PlugNotHeld`` or ``MovedOnRelease``, and ``PartLost`` for a module that the jaws do not
+    hold: it stays where it is, for the operator.
     """
     run = inserted.run
     arm = run.cell.arm
@@ -70,6 +71,8 @@ async def _pull(run: PluggingRun, attempt: PushAttempt) -> float:
         pull_n = -readings[-1][1]
     await run.recorder.figure(keys.PULL_TRAVEL, pulled_m / MM, "mm", limit=Limit(upper=most_m / MM))
     await run.recorder.figure(keys.PULL, pull_n, "N", limit=Limit(lower=wanted_n))
+    # Jaws that have lost the module meet no resistance either.
+    await run.cell.gripper.confirm_part()
     if pull_n < wanted_n:
         raise PlugNotHeld(f"{pull_n:.1f} N after {pulled_m / MM:.2f} mm, wanted {wanted_n:g} N")
     return free_depth_m(readings)

@@ -16,6 +16,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
 from cellctl.config.load import load_cell
+from cellctl.errors.gripper import PartLost
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.chain.cell_figures import MountedCamera
@@ -85,6 +86,8 @@ class Bench:
     """The plug in the gripper."""
     held: bool = False
     mass_kg: float = 0.25
+    lost: bool = False
+    """The jaws have closed on nothing: the module fell out of them."""
     sideways_n: float = 0.0
     """What else the force sensor feels while the module is held."""
 
@@ -199,6 +202,8 @@ class Bench:
 
     async def confirm_part(self) -> None:
         self.events.append("part?")
+        if self.lost:
+            raise PartLost("gripper: no part between the jaws")
 
     def _hold(self, *, held: bool) -> None:
         self.held = held

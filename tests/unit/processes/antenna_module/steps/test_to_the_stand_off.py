@@ -7,6 +7,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.errors.force import TareImplausible
+from cellctl.errors.gripper import PartLost
 from cellctl.geometry.pose import MM, pose_error
 from cellctl.processes.antenna_module.faults.connector import ConnectorTurned, MarksMissing
 from cellctl.processes.antenna_module.faults.plugging import (
@@ -141,8 +142,19 @@ async def test_over_the_socket_by_the_free_way_and_tared_there(bench: Bench) -> 
     np.testing.assert_allclose(
         bench.visited[begun].translation[:2], bench.visited[begun - 1].translation[:2]
     )
-    assert bench.events[-1] == "slowly"
+    assert bench.events[-2:] == ["slowly", "part?"]
     assert bench.guard.asked[-3:] == ["disarm", "set_wrench_frame", "tare"]
+
+
+async def test_a_module_that_was_lost_on_the_way_is_told_before_any_contact(bench: Bench) -> None:
+    done = await planned(bench)
+    bench.guard.asked.clear()
+    # Of 2.5 N, which is within what hoses may change.
+    bench.lost, bench.mass_kg = True, 0.0
+    bench.feel(sideways_n=0.0)
+    with pytest.raises(PartLost):
+        await over.stand_off(done)
+    assert "arm" not in bench.guard.asked
 
 
 async def test_a_plug_that_touches_already_is_not_tared_away(bench: Bench) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.errors.gripper import PartLost
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.chain.looks import Looks, PlugLook
 from cellctl.processes.antenna_module.faults.connector import MarksMissing
@@ -115,7 +116,9 @@ async def test_a_module_that_stays_is_good(plugged: Plugged) -> None:
     state = await plugged.inserted()
     begun = len(plugged.bench.events)
     await verify.verify(state)
-    assert plugged.bench.events[begun:] == ["open", "slowly", "move", "move", "look released"]
+    assert plugged.bench.events[begun:] == [
+        "part?", "open", "slowly", "move", "move", "look released",
+    ]  # fmt: skip
     figures = plugged.bench.notes.figures
     assert figures[keys.PULL] >= 2.0
     # What was pressed comes off first, then contacts give way by a few micrometres.
@@ -141,6 +144,20 @@ async def test_a_plug_that_follows_the_pull_is_not_released(plugged: Plugged) ->
         await verify.verify(state)
     assert "open" not in plugged.bench.events
     assert PlugNotHeld in AntennaModule.spoiled_by
+
+
+@pytest.mark.parametrize("wrench", [held, loose])
+async def test_a_module_that_the_jaws_have_lost_is_no_bad_plug(
+    plugged: Plugged, wrench: Wrench
+) -> None:
+    plugged.wrench = wrench
+    state = await plugged.inserted()
+    plugged.bench.lost = True
+    with pytest.raises(PartLost):
+        await verify.verify(state)
+    # Nor is it taken for one that was let go in its socket.
+    assert "open" not in plugged.bench.events
+    assert PartLost not in AntennaModule.spoiled_by
 
 
 @pytest.mark.parametrize(
