@@ -22,6 +22,8 @@ class Ended(StrEnum):
     FORCE = "force"
     TRAVEL = "travel"
     TIME = "time"
+    """That of a press or of compliance is over. A motion along a way that takes far too long is a
+    fault of its stream, and raises it."""
     CONDITION = "condition"
     """The caller's own condition held."""
 

@@ -31,10 +31,10 @@ from cellctl.cell.contact_motion.stalled_feed import StalledFeed
 from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
 from cellctl.cell.contact_motion.ticks import MotionKind
 from cellctl.clock import now_s
-from cellctl.errors.streamed_contact import HeldTooLong
+from cellctl.errors.streamed_contact import HeldTooLong, StreamLate
 from cellctl.force.contact.streamed.path import PathFollower, straight
 from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
-from cellctl.geometry.pose import Array
+from cellctl.geometry.pose import MM, Array
 
 _TURN_LEVER_M = 0.1
 """A turn on the way counts as the way of a point so far from the tip: about the length of a peg
@@ -287,5 +287,14 @@ class StreamedContact(ContactMotions):
         press: Press | None = None,
     ) -> ContactMotion:
         self._loop.begin_motion(kind)
-        limit_s = _LATEST_S + _LATEST_RATIO * path.remaining / slowest
-        return await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
+        way = max(path.remaining, _SHORTEST_M)
+        limit_s = _LATEST_S + _LATEST_RATIO * way / slowest
+        motion = await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
+        if motion.ended is Ended.TIME:
+            # Late ticks let the arm stand: where it has come to says nothing of the part.
+            depth_mm = float(motion.last.task_position_tip_m[2]) / MM
+            raise StreamLate(
+                f"{kind.value} was given up after {limit_s:.1f} s with {path.remaining / way:.0%} "
+                f"of its way left, the tip at a depth of {depth_mm:.1f} mm"
+            )
+        return motion

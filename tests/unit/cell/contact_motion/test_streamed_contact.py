@@ -1,11 +1,12 @@
 import asyncio
-from collections.abc import Coroutine
+from collections.abc import Callable, Coroutine
 from typing import Any
 
 import numpy as np
 import pytest
 
 from cellctl.cell.contact_motion.motions import ContactMotion, Ended
+from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.errors.force import ForceLimitExceeded
 from cellctl.errors.streamed_contact import ContactLost, StreamLate
 from cellctl.force.contact.streamed.gains import LoopFigures
@@ -184,6 +185,32 @@ def test_a_peg_that_gives_way_without_turns_keeps_its_attitude() -> None:
     run(motions.comply(5.0, 3.0, turns=False))
     assert world.sent[-1][0] == pytest.approx(0.3e-3, abs=0.02e-3)
     assert world.sent[-1][3:] == pytest.approx(np.zeros(3), abs=1e-9)
+
+
+class AlwaysLate(dict[int, float]):
+    """Late ticks without an end: each takes three periods, in which the arm stands."""
+
+    def get(self, key: int, default: float | None = None) -> float:  # type: ignore[override]
+        return 3.0
+
+
+@pytest.mark.parametrize(
+    "begin",
+    [
+        # Ways so short that next to all of the time is what every motion is given.
+        lambda motions: motions.back_out(-9.15e-3),
+        lambda motions: motions.feed(9.25e-3, 30.0),
+    ],
+    ids=["back out", "feed"],
+)
+def test_a_motion_that_late_ticks_have_kept_from_its_way_is_no_end_of_it(
+    begin: Callable[[StreamedContact], Coroutine[Any, Any, ContactMotion]],
+) -> None:
+    """Told as an end by time it would be taken for a peg that is out, or for a seat not met."""
+    tip = np.array([0.0, 0.0, 9.2e-3, 0.0, 0.0, 0.0])
+    world = ElasticWorld(lambda _tip: np.zeros(6), tip=tip, late_ticks=AlwaysLate())
+    with pytest.raises(StreamLate, match=r"given up after .* of its way left, .* 9\.2 mm"):
+        run(begin(contact(world)))
 
 
 def test_late_ticks_never_make_a_longer_step() -> None:
