@@ -1,9 +1,15 @@
-"""Whether an arm that presses on something may leave it by itself."""
+"""Whether an arm that presses on something may leave it by itself, and how hard it presses."""
 
+import asyncio
 from dataclasses import replace
 
 from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.clock import now_s
+from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
+
+_READING_S = 0.1
+"""Length of the stretch of samples that is averaged: 100 at 1 kHz."""
 
 
 def able_to_leave(robot: Robot, guard: GuardPort) -> bool:
@@ -13,3 +19,20 @@ def able_to_leave(robot: Robot, guard: GuardPort) -> bool:
     # makes a robot not ready needs a person.
     able = replace(state, stop_latched=False).ready
     return able and health.alive and health.stop_channel_up
+
+
+async def pressed_n(guard: GuardClient, inwards: float, most_n: float) -> float:
+    """Force with which a part is pressed into its place, as far as the guard tells; at most
+    ``most_n``.
+
+    To be asked before a tare, which hides it: a part that is drawn out changes the force by this
+    before it is pulled at all. ``inwards`` is 1 where z of the guard's frame points into the place
+    and -1 where it points out. Without a frame of the part the guard has been started anew and
+    nobody knows: ``most_n``.
+    """
+    if not guard.in_part_frame:
+        return most_n
+    begin_s = now_s()
+    await asyncio.sleep(_READING_S)
+    along_n = float(guard.samples(begin_s).wrench[:, 2].mean())
+    return min(most_n, max(0.0, -inwards * along_n))

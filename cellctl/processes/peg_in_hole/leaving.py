@@ -1,10 +1,11 @@
-"""Brings the arm home, out of the hole first where a run has left it there."""
+"""Brings the arm home, out of the hole first where a run has left it there; the force meanwhile."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.leaving import pressed_n
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import HOME
@@ -24,31 +25,69 @@ async def leave_hole(cell: PegCell) -> None:
     There is no gripper in the process: the part comes along, as it is held.
     """
     recipes = peg_recipes(cell.cell.config)
+    guard, press_n = cell.arm.guard, 0.0
+    if recipes:
+        held = recipe_in_hole(cell)
+        if held is not None:
+            # In the frame of a run, z of the tip points into the hole.
+            press_n = await pressed_n(guard, 1.0, held.forces.insertion_n)
+        # A run that was stopped has left it armed, and an armed guard takes no other load.
+        await guard.disarm()
+        await guard.set_gravity_compensation(weight_of(held or recipes[0]))
     # After a restart nobody remembers which recipe has run, so each is asked whether the tip is in
     # its hole.
     for recipe in recipes:
-        await _out_of(cell, recipe)
-    if recipes:
-        await cell.arm.guard.set_gravity_compensation(weight_of(recipes[0]))
+        await _out_of(cell, recipe, press_n)
     home_rad = np.radians(cell.arm.config.poses_deg[HOME])
     await move_joint_free(cell.cell, cell.arm, home_rad)
 
 
-async def _out_of(cell: PegCell, recipe: PegRecipe) -> None:
-    base_T_hole = pose_from_xyzabc(recipe.base_T_hole.pose)
+async def show_force_on_tip(cell: PegCell) -> None:
+    """Have the guard subtract what hangs on its sensor, and give the force in the axes of the tip.
+
+    Away from every hole the axes stay those of the sensor. No tare: the tip may be in contact.
+    Raises the faults of guard and robot.
+    """
+    held = recipe_in_hole(cell)
+    recipes = peg_recipes(cell.cell.config)
+    if recipes:
+        await cell.arm.guard.set_gravity_compensation(weight_of(held or recipes[0]))
+    if held is not None:
+        flange_T_tip = pose_from_xyzabc(held.flange_T_tip)
+        await cell.arm.guard.set_wrench_frame(cell.arm.flange_T_sensor.inv() * flange_T_tip)
+
+
+def recipe_in_hole(cell: PegCell) -> PegRecipe | None:
+    """The first recipe whose tip would be in its hole, or low over it."""
     here = cell.robot.state().base_T_flange
-    tip = base_T_hole.inv() * here * pose_from_xyzabc(recipe.flange_T_tip)
+    recipes = peg_recipes(cell.cell.config)
+    return next((recipe for recipe in recipes if _missing_m(recipe, here) > 0), None)
+
+
+def _missing_m(recipe: PegRecipe, base_T_flange: RigidTransform) -> float:
+    """How far out a tip has to go along the axis of the hole; 0 away from it."""
+    base_T_hole = pose_from_xyzabc(recipe.base_T_hole.pose)
+    tip = base_T_hole.inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_tip)
     x_m, y_m, height_m = tip.translation.tolist()
+    if np.hypot(x_m, y_m) > _BESIDE_M:
+        return 0.0
     uncertain_m = recipe.base_T_hole.height_uncertainty_mm * MM
-    missing_m = CLEAR_OF_FACE_M + uncertain_m - height_m
-    if np.hypot(x_m, y_m) > _BESIDE_M or missing_m <= 0:
+    return max(0.0, CLEAR_OF_FACE_M + uncertain_m - float(height_m))
+
+
+async def _out_of(cell: PegCell, recipe: PegRecipe, press_n: float) -> None:
+    here = cell.robot.state().base_T_flange
+    missing_m = _missing_m(recipe, here)
+    if missing_m == 0:
         return
     # Along the axis of the hole: in any other direction a tight peg would jam.
+    base_T_hole = pose_from_xyzabc(recipe.base_T_hole.pose)
     up = base_T_hole.rotation.apply([0.0, 0.0, missing_m])
     target = RigidTransform.from_translation(up) * here
     wrench_frame = pose_from_xyzabc(recipe.flange_T_tip)
-    # More, and the part is held, which is for a person to see.
-    pull = WrenchTolerance(recipe.forces.withdrawal_n, _TWIST_N_M)
+    # More, and the part is held, which is for a person to see. What it is pressed with goes first.
+    pull_n = recipe.forces.withdrawal_n
+    pull = WrenchTolerance(pull_n, _TWIST_N_M, axial_n=pull_n + press_n)
     async with guarded_moves(cell.cell, cell.arm, wrench_frame, pull) as move:
         await move(
             cell.robot.move_linear(target, speed_m_s=_SLOW_M_S, acceleration_m_s2=_SLOW_M_S2)

@@ -134,6 +134,15 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         if recipes:
             await leave_hole(self.cell(recipes[0]))
 
+    async def show_contact_force(self) -> None:
+        """Less part and gripper by the recipe; of a tip in its hole in the tip's axes."""
+        from cellctl.processes.peg_in_hole.leaving import show_force_on_tip
+        from cellctl.processes.peg_in_hole.stations import peg_recipes
+
+        recipes = peg_recipes(self.services.cell.config)
+        if recipes:
+            await show_force_on_tip(self.cell(recipes[0]))
+
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
         """The search on its face, force over depth, every item of the verdict."""

@@ -8,6 +8,7 @@ from cellctl.processes.antenna_module.looking import nominal
 from cellctl.processes.antenna_module.mated import MATED_TURN
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.moves.places import raised
+from cellctl.processes.antenna_module.pushing.draw_out import draw_out
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.run import PluggingRun
@@ -28,19 +29,23 @@ async def move_to_start(run: PluggingRun) -> GripperEmpty:
 
 
 async def leave_stations(cell: AntennaCell) -> None:
-    """Straight up from tray or socket, then home.
+    """Straight up from tray or socket, a plug slowly out of its socket first; then home.
 
     Raises ``ModuleInGripper`` after that: the operator takes the module out where it is reached,
     and nothing begins with it.
     """
     state = await cell.gripper.state()
+    holding = state.part_present and not state.opened
+    if holding:
+        for recipe in antenna_recipes(cell.cell.config):
+            await draw_out(cell, recipe)
     mover = Mover(cell)
     height_m = _height_to_leave_m(cell)
     if height_m > 0:
         here = cell.arm.robot.state().base_T_flange
         await mover.slowly_to(raised(here, height_m))
     await mover.to_taught(HOME)
-    if state.part_present and not state.opened:
+    if holding:
         raise ModuleInGripper("the gripper is closed on a part")
 
 

@@ -4,4 +4,5 @@
 - ``attempt``: devices, limits and recorder of one insertion
 - ``push_in``: from the stand-off to the seat
 - ``back_out``: straight out after a fault
+- ``draw_out``: the same without a run, for a Reset
 """

@@ -10,6 +10,7 @@ from cellctl.config.load import load_cell
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import ModuleInGripper
 from cellctl.processes.antenna_module.moves import start
+from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
 from tests.unit.processes.antenna_module.steps.bench import CONFIG, TAUGHT, Bench
 
@@ -30,7 +31,12 @@ def cell_of(bench: Bench, *, opened: bool, part: bool) -> AntennaCell:
 @pytest.fixture
 def bench(monkeypatch: pytest.MonkeyPatch) -> Bench:
     made = Bench()
+
+    async def draw_out(_cell: AntennaCell, _recipe: AntennaRecipe) -> None:
+        made.events.append("draw out")
+
     monkeypatch.setattr(start, "Mover", lambda _cell: made)
+    monkeypatch.setattr(start, "draw_out", draw_out)
     return made
 
 
@@ -55,5 +61,5 @@ async def test_nothing_begins_with_a_module_in_the_gripper(bench: Bench) -> None
     bench.base_T_flange = IN_SOCKET
     with pytest.raises(ModuleInGripper, match="closed on a part"):
         await start.leave_stations(cell_of(bench, opened=False, part=True))
-    # Where it can be reached, still gripped: opened, it would fall.
-    assert bench.events == ["slowly", "home"]
+    # Out of the socket with a pull that a plug may need, and never let go: opened, it would fall.
+    assert bench.events == ["draw out", "slowly", "home"]

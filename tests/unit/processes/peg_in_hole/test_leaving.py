@@ -1,0 +1,113 @@
+"""Out of the hole in a new daemon, whose guard knows nothing, and what the force is told as."""
+
+from contextlib import nullcontext
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import RigidTransform
+
+from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.config.load import load_cell
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.guard.client import GuardClient
+from cellctl.guard.limits import GuardLimits
+from cellctl.interfaces import Robot
+from cellctl.processes.peg_in_hole.leaving import CLEAR_OF_FACE_M, leave_hole, show_force_on_tip
+from cellctl.processes.peg_in_hole.stations import OVER, PegCell, peg_recipes
+from tests.unit.cell.guard import TinyGuard
+from tests.unit.cell.robots import StillRobot
+from tests.unit.processes.antenna_module.steps.bench import CONFIG
+
+CELL = load_cell(CONFIG / "insertion-pin.toml")
+
+
+class NewGuard(TinyGuard):
+    """Knows no load yet; remembers the one that it is given."""
+
+    load: GravityCompensation | None = None
+
+    def __init__(self) -> None:
+        super().__init__(gravity_compensated=False, in_part_frame=False)
+        self.moved_with: list[GravityCompensation | None] = []
+
+    async def arm(self, limits: GuardLimits) -> None:
+        await super().arm(limits)
+        self.moved_with.append(self.load)
+
+    async def set_gravity_compensation(self, compensation: object) -> None:
+        assert not self.armed, "an armed guard refuses it"
+        await super().set_gravity_compensation(compensation)
+        assert isinstance(compensation, GravityCompensation)
+        self.load = compensation
+
+
+def flange_at(depth_mm: float) -> RigidTransform:
+    """The flange with the tip so deep in the hole."""
+    (recipe,) = peg_recipes(CELL)
+    hole = pose_from_xyzabc(recipe.base_T_hole.pose)
+    place = RigidTransform.from_components(np.array([0.0, 0.0, -depth_mm * 1e-3]), OVER)
+    return hole * place * pose_from_xyzabc(recipe.flange_T_tip).inv()
+
+
+def left_at(depth_mm: float) -> tuple[PegCell, StillRobot, NewGuard]:
+    guard = NewGuard()
+    robot = StillRobot("arm", flange=flange_at(depth_mm), watched_by=guard)
+    (sensor,) = CELL.force_sensors
+    arm = GuardedRobot(
+        cast(Robot, robot), CELL.robots[CELL.force_sensors[sensor].mounted_on], sensor,
+        cast(GuardClient, guard), CELL.force_sensors[sensor],
+    )  # fmt: skip
+    cell: Any = SimpleNamespace(config=CELL, trips_awaited=lambda _: nullcontext())
+    nothing: Any = None
+    return PegCell(cell, arm, nothing), robot, guard
+
+
+@pytest.mark.parametrize("armed", [False, True], ids=["restarted", "stopped"])
+async def test_the_weight_is_known_before_the_arm_leaves_the_hole(armed: bool) -> None:
+    cell, robot, guard = left_at(5.0)
+    guard.armed = armed
+    await leave_hole(cell)
+    assert [move.kind for move in robot.moves] == ["linear", "joint"]
+    risen_m = robot.moves[0].target.translation[2] - flange_at(5.0).translation[2]
+    assert risen_m > CLEAR_OF_FACE_M + 5e-3
+    (recipe,) = peg_recipes(CELL)
+    for load in guard.moved_with:
+        assert load is not None
+        np.testing.assert_allclose(load.A[0, 0], recipe.load.mass_kg * 9.80665)
+
+
+@pytest.mark.parametrize(("in_frame", "pressed_n"), [(True, 25.0), (False, 30.0)])
+async def test_the_press_that_a_stop_has_left_is_no_pull(in_frame: bool, pressed_n: float) -> None:
+    cell, _, guard = left_at(5.0)
+    guard.in_part_frame = in_frame
+    guard.raw = guard.raw * 0.05 - np.array([0.0, 0.0, 25.0, 0.0, 0.0, 0.0])
+    await leave_hole(cell)
+    (recipe,) = peg_recipes(CELL)
+    assert recipe.forces.insertion_n == 30.0
+    x_n, y_n, z_n, *_ = guard.limits[0].filtered
+    # As much as a run may press where nobody knows.
+    assert z_n == pytest.approx(recipe.forces.withdrawal_n + pressed_n, abs=0.1)
+    assert x_n == y_n == recipe.forces.withdrawal_n
+
+
+async def test_the_force_on_a_tip_in_its_hole_is_told_in_its_axes_without_the_weight() -> None:
+    cell, robot, guard = left_at(5.0)
+    await show_force_on_tip(cell)
+    assert guard.gravity_compensated
+    (recipe,) = peg_recipes(CELL)
+    in_the_run = cell.arm.flange_T_sensor.inv() * pose_from_xyzabc(recipe.flange_T_tip)
+    assert guard.sensor_T_wrench is not None
+    np.testing.assert_allclose(guard.sensor_T_wrench.as_matrix(), in_the_run.as_matrix())
+    # A tare would hide the very contact that is asked for.
+    assert "tare" not in guard.asked
+    assert robot.moves == []
+
+
+async def test_away_from_the_hole_the_weight_is_known_and_the_axes_are_the_sensors() -> None:
+    cell, _, guard = left_at(-100.0)
+    await show_force_on_tip(cell)
+    assert guard.gravity_compensated
+    assert not guard.in_part_frame
