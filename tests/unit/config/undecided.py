@@ -10,7 +10,49 @@ def _real(old: str, new: str, key: str, said: str) -> Mistake:
     return Mistake("cell.toml", f"{old}", new, key, said)
 
 
+_LOAD = """[robots.main.load]          # with the deck, as a person has selected it on the controller
+mass_kg = 200.0
+com_mm = [30.0, 20.0, 460.0]
+tolerance_kg = 12.0         # procedure 106 weighs in a narrow cone, where cross-talk of 1 % moves the weight by 1.5 %
+tolerance_mm = 30.0
+"""  # noqa: E501
+_RANGE = "range = [5000.0, 5000.0, 5000.0, 1000.0, 1000.0, 1000.0]"
+_WEIGHED = (
+    Undecided(
+        deck(_LOAD, "", "robots.main.load", "nothing is compared with what procedure 106 weighs"),
+        "no load: a cell need not compare it",
+    ),
+    Undecided(
+        deck(
+            "tolerance_kg = 12.0",
+            "tolerance_kg = 50.0",
+            "robots.main.load.tolerance_kg",
+            "more than 16 kg, 8% of the mass",
+        ),
+        "a wide tolerance of the load: parts of one job may differ so much",
+    ),
+    Undecided(
+        deck(
+            _RANGE,
+            _RANGE.replace("000.0", "0000.0"),
+            "force_sensors.force.settings.range",
+            "50000 N for a weight of 1962 N",
+        ),
+        "a far larger sensor: somebody may have had one",
+    ),
+    Undecided(
+        drawn(
+            ("deck.toml",),
+            "position_sigma_mm = 0.004",
+            "position_sigma_mm = 0.0004",
+            "no gauge tells them better than 0.0013 mm",
+        ),
+        "holes made more exactly than anybody can measure: nothing here contradicts it",
+    ),
+)
+
 UNDECIDED = (
+    *_WEIGHED,
     Undecided(UNLIKE_BOX, "a smaller box than that of the other head: its surroundings may differ"),
     Undecided(LOW_BOX, "a box that reaches below the arm's feet: it may stand on a pedestal"),
     Undecided(

@@ -5,9 +5,10 @@ from collections.abc import Iterator
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.issue import ConfigIssue
+from cellctl.force.gravity.acceptance import PayloadLimits
 from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import MAIN
+from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
 
 _MOST_SAG_MM = 10.0
 """Greatest sag of an arm under its load. It is that of a lowest natural frequency of 5 Hz, sqrt(g /
@@ -16,6 +17,11 @@ _SWINGS_TO = 2.0
 """Times the force of a steady acceleration: a load on a spring that is suddenly accelerated."""
 _MOST_LEFT = 0.2
 """Greatest share of the weight that gravity compensation may leave; 4 % is usual."""
+_WEIGHED_TO = PayloadLimits().mass_ratio + PayloadLimits().crosstalk_ratio
+"""Share of the mass by which a weighing that is accepted may be off."""
+_MOST_RANGE = 10.0
+"""Range of a sensor over the weight on it. Noise and cross-talk are shares of the range: beyond
+this, 1 % of it is a tenth of the weight."""
 
 
 def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
@@ -54,3 +60,33 @@ def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Conf
             f"or that force at most {_MOST_LEFT * weight_n:.0f} N"
         )
         yield ConfigIssue(f"robots.{robot}.load.mass_kg", f"{load.mass_kg:g}", allowed)
+
+
+def load_remarks(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
+    """A load that nothing is compared with, hardly compared, or weighed by too large a sensor."""
+    robot, force = recipe.device(MAIN), recipe.device(FORCE)
+    load = cell.robots[robot].load
+    if load is None:
+        said = (
+            "without it nothing is compared with what procedure 106 weighs: a controller that "
+            "reckons with another load moves another arm"
+        )
+        yield ConfigIssue(f"robots.{robot}.load", "(missing)", said)
+        return
+    if load.tolerance_kg > _WEIGHED_TO * load.mass_kg:
+        said = (
+            f"more than {_WEIGHED_TO * load.mass_kg:g} kg, {_WEIGHED_TO:.0%} of the mass, by which "
+            "a weighing that is accepted may be off: another load would pass for this one"
+        )
+        yield ConfigIssue(f"robots.{robot}.load.tolerance_kg", f"{load.tolerance_kg:g}", said)
+    measuring = cell.force_sensors[force].settings.get("range")
+    weight_n = (load.mass_kg - load.not_weighed_kg) * G_M_S2
+    # By convention a driver whose sensor has a measuring range names it so, forces first.
+    if isinstance(measuring, list) and len(measuring) == 6:
+        least_n = min(measuring[:3])
+        if least_n > _MOST_RANGE * weight_n:
+            said = (
+                f"{least_n:g} N for a weight of {weight_n:.0f} N: right if the sensor is so large; "
+                "with a range that it does not have, a clipped force is taken for a true one"
+            )
+            yield ConfigIssue(f"force_sensors.{force}.settings.range", str(measuring), said)

@@ -11,6 +11,7 @@ from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing, read_drawings
+from cellctl.processes.deck_to_frame.checks.plausible.loads import load_remarks
 from cellctl.processes.deck_to_frame.checks.plausible.stored import (
     calibrated_joints_deg,
     same_joints,
@@ -26,6 +27,9 @@ from cellctl.vision.registration.rigid_fit import on_a_line
 _NEARLY = 0.05
 """Three holes are nearly on a line when they spread across it by less than this share of their
 spread along it."""
+_LEAST_PLACE_MM = 0.0013
+"""What the best coordinate measuring machines tell of a place over 0.5 m, 0.9 µm + L/350 (greatest
+permissible error by their makers, ISO 10360-2), over the root of three."""
 _USUAL_PAST_MM, _USUAL_WINDOW_MM = 0.5, 1.0
 
 
@@ -36,11 +40,13 @@ def recipe_remarks(
     deck, frame = read_drawings(recipe, key, folder)
     for drawing in (deck, frame):
         yield from _lines(drawing)
+        yield from _exact_places(drawing)
     yield from _thickness_once(recipe, key, deck)
     yield from _compared(recipe, key)
     yield from _late(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
+    yield from load_remarks(cell, recipe)
     yield from _taught_again(cell, recipe, folder)
     yield from unlike_box_remarks(cell, recipe)
     yield from tool_floor_remarks(cell, recipe.device(MAIN), recipe.flange_T_deck)
@@ -55,6 +61,18 @@ def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
         if len(holes) >= 3 and on_a_line(places_m, _NEARLY):
             said = "these holes lie on one line; right if the drawing has them so"
             yield drawing.issue(name, str(list(holes)), said)
+
+
+def _exact_places(drawing: PartDrawing) -> Iterator[ConfigIssue]:
+    sigmas_mm = {hole.position_sigma_m / MM for hole in drawing.features.holes}
+    sigma_mm = max(sigmas_mm, default=0.0)
+    if 0.0 < sigma_mm < _LEAST_PLACE_MM:
+        said = (
+            "nothing else here tells how exactly the holes were made, and no gauge tells them "
+            f"better than {_LEAST_PLACE_MM:g} mm: with too little the seat is called surer than "
+            "it is"
+        )
+        yield drawing.issue("position_sigma_mm", f"{sigma_mm:g}", said)
 
 
 def _thickness_once(recipe: DeckRecipe, key: str, deck: PartDrawing) -> Iterator[ConfigIssue]:
