@@ -161,6 +161,9 @@ def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Ex
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}")
+        definition = process_definition(recipe.process)
+        for what in definition.not_yet_checked(cell, recipe, cell_file.parent):
+            console.print(f"     not checked yet: {what}", style="yellow")
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
     if examined.remarks:

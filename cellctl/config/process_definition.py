@@ -90,6 +90,18 @@ class ProcessDefinition(ABC):
         return ()
 
     @classmethod
+    def not_yet_checked(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        folder: Path,  # noqa: ARG003
+    ) -> Iterable[str]:
+        """What nothing in a good file contradicts before a calibration is stored; by default
+        nothing. Each is a line of ``cellctl check``.
+        """
+        return ()
+
+    @classmethod
     def moves(
         cls,
         cell: CellConfig,  # noqa: ARG003

@@ -85,6 +85,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         from cellctl.processes.antenna_module.checks.figures import board_remarks
         from cellctl.processes.antenna_module.checks.looks import look_remarks
         from cellctl.processes.antenna_module.checks.plausible import marks_remarks
+        from cellctl.processes.antenna_module.checks.uncalibrated import uncalibrated_remarks
 
         settings = cast(AntennaSettings, cell.processes[recipe.process])
         plugged = cast(AntennaRecipe, recipe)
@@ -92,7 +93,15 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         yield from look_remarks(cell, plugged, folder)
         yield from above_remarks(cell, plugged, key)
         yield from marks_remarks(plugged, key)
+        yield from uncalibrated_remarks(cell, plugged, folder)
         yield from tool_floor_remarks(cell, plugged.device(ARM), plugged.flange_T_plug)
+
+    @classmethod
+    def not_yet_checked(cls, cell: CellConfig, recipe: Recipe, folder: Path) -> Iterable[str]:
+        """What only procedures 201 to 204 will hold against the cell."""
+        from cellctl.processes.antenna_module.checks.uncalibrated import not_yet_checked
+
+        return not_yet_checked(cell, cast(AntennaRecipe, recipe), folder)
 
     @classmethod
     def moves(cls, cell: CellConfig, recipe: Recipe, folder: Path) -> Iterable[StatedMove]:

@@ -1,0 +1,51 @@
+"""A cell before its first calibrations: what its file says against itself, and what is left."""
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from cellctl.cli.commands import whole_app
+from cellctl.config.commissioning import examine_before_commissioning
+from tests.unit.config.test_mistakes import written
+
+STORED, NONE = 'calibration_dir = "antenna-calibration"', 'calibration_dir = "none-yet"'
+CAMERA = "cameras.camera_1.flange_T_camera"
+PLUG = "robots.arm.poses_deg.inspect_plug"
+
+
+@pytest.fixture
+def new(tmp_path: Path) -> Path:
+    return written(tmp_path / "cell", "antenna.toml", STORED, NONE)
+
+
+@pytest.mark.parametrize(
+    ("old", "new_text", "key", "said"),
+    [
+        ("[110.0, 0.0, -50.0,", "[110.0, 0.0, 50.0,", CAMERA, "160 mm from what tray_look sees"),
+        ("inspect_plug = [11.3", "inspect_plug = [-11.3", PLUG, "200 mm beside"),
+        ("board_show = [11.3", "board_show = [-11.3", PLUG, "200 mm beside"),
+        ("flange_T_board_mm = 205.0", "flange_T_board_mm = 155.0", PLUG, "50 mm above or below"),
+    ],
+)
+def test_looks_that_contradict_each_other_are_remarks(
+    new: Path, old: str, new_text: str, key: str, said: str
+) -> None:
+    text = new.read_text(encoding="utf-8")
+    assert old in text
+    new.write_text(text.replace(old, new_text), encoding="utf-8")
+    examined = examine_before_commissioning(new)
+    assert examined.errors == ()
+    (remark,) = [one for one in examined.remarks if one.key == key]
+    assert said in remark.allowed
+
+
+def test_a_new_cell_is_told_what_nothing_contradicts_yet(new: Path, tmp_path: Path) -> None:
+    done = CliRunner().invoke(whole_app(), ["check", str(new)])
+    assert done.exit_code == 0
+    for procedure in (201, 202, 203, 204):
+        assert f"procedure {procedure}" in done.stdout
+    assert examine_before_commissioning(new).remarks == ()
+    calibrated = written(tmp_path / "calibrated", "antenna.toml")
+    done = CliRunner().invoke(whole_app(), ["check", str(calibrated)])
+    assert "not checked yet" not in done.stdout
