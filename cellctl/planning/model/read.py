@@ -60,6 +60,12 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
 def _document(path: Path) -> ModelDocument:
     try:
         raw = tomllib.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError as error:
+        raise ConfigUnreadable(
+            f"{path}: this cell has no model yet. Write one: where its arms stand, their bodies "
+            "and what stands around them (docs/planning.md); config/deck.model.toml, "
+            "antenna.model.toml and insertion-pin.model.toml show how"
+        ) from error
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
     try:

@@ -109,6 +109,11 @@ def test_what_is_wrong_is_said(tmp_path: Path, old: str, new: str, fault: type[C
         read_model(CELL, write_model(tmp_path, old, new), DECK.parent)
 
 
+def test_a_cell_without_a_model_is_told_what_to_write(tmp_path: Path) -> None:
+    with pytest.raises(ConfigUnreadable, match=r"has no model yet.*docs/planning\.md"):
+        read_model(CELL, tmp_path / "none.model.toml", DECK.parent)
+
+
 def test_a_robot_that_the_cell_does_not_have_is_refused(tmp_path: Path) -> None:
     text = Path("config/deck.model.toml").read_text(encoding="utf-8").replace("aux_2", "aux_3")
     path = tmp_path / "model.toml"
