@@ -4,8 +4,8 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
+from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.records.run_store import DataDir, opened_store
 
 
@@ -26,7 +26,7 @@ def report(
     path = out or Path(f"run-{run}.{'pdf' if pdf else 'html'}")
     with opened_store(data_dir) as store:
         pages = pages_of(store.run(run).head.process)
-        with Console(stderr=True).status("drawing the report") as status:
+        with console_of_lines(stderr=True).status("drawing the report") as status:
 
             def tell(step: str) -> None:
                 status.update(f"PDF: {step}")
