@@ -20,8 +20,8 @@ _FACE_CLEAR_MM = 1.0
 """The face is touched so far beside all places at which the hole may be."""
 _TRUTHS: tuple[Truth | CycleFault, ...] = (*Truth, *CycleFault)
 _AS_TOLD_SHARE = 0.4
-_CONTACTS_FROM = 0.6
-"""Share of the depth at which contacts begin to rub."""
+_CONTACTS_FROM, _CONTACTS_FULL = 0.6, 0.65
+"""Shares of the depth at which contacts begin to rub, and from which on all of them do."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,8 +98,12 @@ def _cell(
     recipe = shipped.recipe.model_dump(exclude_unset=True)
     recipe["fit"] = {**fit, "friction": fit["friction"] + draws.between(-0.03, 0.03)}
     if contacts_n > 0:
-        rub_from = _CONTACTS_FROM * fit["depth_mm"]
-        recipe["fit"]["contacts"] = {"depth_mm": rub_from, "most_n": contacts_n}
+        recipe["fit"]["contacts"] = {
+            "depth_mm": _CONTACTS_FROM * fit["depth_mm"],
+            "full_mm": _CONTACTS_FULL * fit["depth_mm"],
+            "least_n": 0.6 * contacts_n,
+            "most_n": contacts_n,
+        }
     recipe["base_T_hole"] |= {
         "uncertainty_mm": uncertainty,
         "height_uncertainty_mm": 2.0,
@@ -190,4 +194,8 @@ def _true_keys(told: Mapping[str, float] | None) -> Mapping[str, float] | None:
 def _contacts(depth_mm: float, force_n: float) -> tuple[tuple[float, float], ...]:
     if force_n == 0.0:
         return ()
-    return (_CONTACTS_FROM * depth_mm, 0.0), (0.65 * depth_mm, force_n), (depth_mm, 0.75 * force_n)
+    return (
+        (_CONTACTS_FROM * depth_mm, 0.0),
+        (_CONTACTS_FULL * depth_mm, force_n),
+        (depth_mm, 0.75 * force_n),
+    )

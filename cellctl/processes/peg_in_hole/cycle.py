@@ -154,6 +154,7 @@ async def feed_and_judge(
         seat_force_n=fed.seat_force_n,
         seat_slope_n_m=fed.seat_slope_n_m,
         held_way_m=fed.held_way_m,
+        unrubbed_way_m=fed.unrubbed_way_m,
         with_feed_n=fed.with_feed_n,
         capture=capture,
         greatest_force_n=max(fed.greatest_force_n, greatest_before_n(task)),

@@ -30,8 +30,12 @@ class ContactsSection(Section):
 
     depth_mm: _Length
     """From the face to where they begin."""
+    full_mm: _Length
+    """From the face to where all of them rub."""
+    least_n: _Force
+    """Least force that they take from there to the seat, by good insertions."""
     most_n: _Force
-    """Greatest force that they take on the way, by their data sheet or by good insertions."""
+    """Greatest force that they take, likewise."""
 
 
 class Fit(Section):

@@ -132,6 +132,7 @@ def run_trap(task: SearchTask, state: PegState, seed: int) -> TrapOutcome:
         seat_slope_n_m=task.cell.stiffness_n_m * float(rng.uniform(0.6, 1.0)),
         # Slips that nothing on the way tells of.
         held_way_m=0.0,
+        unrubbed_way_m=None,
         with_feed_n=0.0,
         capture=capture,
         greatest_force_n=greatest_n,

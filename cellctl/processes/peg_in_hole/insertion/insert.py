@@ -27,7 +27,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
 )
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
-from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m
+from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.insertion.with_feed import ForceWithFeed, with_feed_n
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
@@ -51,6 +51,8 @@ class Fed:
     seat_slope_n_m: float | None
     held_way_m: float
     """Of the last feed, as ``held_way_m`` has it."""
+    unrubbed_way_m: float | None
+    """Likewise; None for a part without contacts."""
     with_feed_n: float
     """Of the last feed, as ``with_feed_n`` has it."""
     greatest_force_n: float
@@ -121,15 +123,14 @@ class _Feed:
 
     def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
         """What is known at the end of the last feed."""
-        end, task = Standing.of(motion.last), self._task
+        end, fit, cell = Standing.of(motion.last), self._task.fit, self._task.cell
         return Fed(
             depth_m=self._unloaded_m(end),
             seat_force_n=end.axial_n,
             seat_slope_n_m=seat_slope_n_m(motion.samples),
-            held_way_m=held_way_m(
-                motion.samples, task.fit, task.cell.friction, task.cell.stiffness_n_m
-            ),
-            with_feed_n=with_feed_n(motion.samples, task.cell),
+            held_way_m=held_way_m(motion.samples, fit, cell.friction, cell.stiffness_n_m),
+            unrubbed_way_m=unrubbed_way_m(motion.samples, fit, cell.stiffness_n_m),
+            with_feed_n=with_feed_n(motion.samples, cell),
             greatest_force_n=greatest_axial_n(self._samples),
             recoveries=recoveries,
             samples=tuple(self._samples),

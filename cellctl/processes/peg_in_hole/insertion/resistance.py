@@ -47,6 +47,25 @@ def held_way_m(
     return way_m - risen_n / _steepest_n_m(depth_m, axial_n, stiffness_n_m)
 
 
+def unrubbed_way_m(
+    feed: Sequence[ContactSample], fit: FitGeometry, stiffness_n_m: float
+) -> float | None:
+    """The way on which the contacts of a part should rub and are not felt to; None without any.
+
+    A part that slips in its fingers with less force than its contacts take stands before them.
+    """
+    contacts = fit.contacts
+    if contacts is None:
+        return None
+    depth_m = np.array([sample.task_position_tip_m[2] for sample in feed])
+    axial_n = np.array([-float(sample.force_n[2]) for sample in feed])
+    # Where the tip is: the arm goes on by what it gives way.
+    tip_m = depth_m - axial_n / stiffness_n_m
+    between = (tip_m > contacts.full_m + _ZONE_M) & (tip_m < fit.depth_m - _ZONE_M)
+    slack = between & (axial_n < contacts.least_n)
+    return float(np.diff(depth_m)[slack[1:]].sum())
+
+
 def _unexplained_n(
     feed: Sequence[ContactSample], depth_m: Array, fit: FitGeometry, friction: float
 ) -> Array:

@@ -13,7 +13,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
     seat_slope_n_m,
     unloaded_depth_m,
 )
-from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m
+from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.insertion.with_feed import LEAST_SIGN_N, with_feed_n
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
@@ -39,6 +39,7 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
         seat_force_n=end.axial_n,
         seat_slope_n_m=seat_slope_n_m(parts.feed),
         held_way_m=held_way_m(parts.feed, fit, task.cell.friction, task.cell.stiffness_n_m),
+        unrubbed_way_m=unrubbed_way_m(parts.feed, fit, task.cell.stiffness_n_m),
         with_feed_n=with_feed_n(parts.feed, task.cell),
         capture=_capture(parts, task),
         greatest_force_n=max(greatest_axial_n(curve.samples), task.greatest_n),

@@ -50,7 +50,9 @@ def _keys(section: KeysSection) -> KeyGeometry:
 
 
 def _contacts(section: ContactsSection) -> PartContacts:
-    return PartContacts(section.depth_mm * MM, section.most_n)
+    return PartContacts(
+        section.depth_mm * MM, section.full_mm * MM, section.least_n, section.most_n
+    )
 
 
 def seat_limits(fit: Fit, seat: Seat) -> PegSeatLimits:

@@ -30,8 +30,11 @@ class PartContacts:
 
     depth_m: float
     """Depth of the tip at which they begin."""
+    full_m: float
+    """Depth from which on all of them rub."""
+    least_n: float
     most_n: float
-    """Greatest force that they take on the way."""
+    """Least and greatest force that they take together, from there to the seat."""
 
 
 @dataclass(frozen=True, slots=True)

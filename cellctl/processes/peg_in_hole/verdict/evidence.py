@@ -31,6 +31,8 @@ class InsertionEvidence:
     """Rise of the axial force over depth at the seat."""
     held_way_m: float | None
     """Way of the feed on which more than its walls and its seat have held the part back."""
+    unrubbed_way_m: float | None
+    """Way on which the contacts of a part should rub and were not felt; for parts with contacts."""
     with_feed_n: float | None
     """Greatest force that has acted with the feed instead of against it."""
     capture: LateralCapture | None

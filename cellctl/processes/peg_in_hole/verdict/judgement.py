@@ -44,6 +44,7 @@ SLOPE = "rise of the force at the seat"
 RESISTED, PLAY_X, PLAY_Y = "directions that resist", "play along x", "play along y"
 STEADY, ALIVE = "depth change when pushed sideways", "force change when pushed sideways"
 HELD, WITH_FEED = "way held back before the seat", "force with the feed"
+UNRUBBED = "way without the force of its contacts"
 SLIP, RETOUCH = "greatest force over grip force", "error of the touch on the rear"
 KEYED, PULL = "directions that resist a turn", "pull that was held"
 
@@ -54,7 +55,7 @@ _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
     (frozenset({WITH_FEED}), ForceActsWithFeed),
     (frozenset({SLIP, RETOUCH}), PegSlipped),
     (frozenset({ALIVE}), SensorDead),
-    (frozenset({HELD}), PegSlipped),
+    (frozenset({HELD, UNRUBBED}), PegSlipped),
     (frozenset({DEPTH, LOW_FORCE, HIGH_FORCE, SLOPE}), NotSeated),
     (frozenset({RESISTED, STEADY}), FalseSeat),
     (frozenset({PLAY_X, PLAY_Y}), HoleTooWide),
@@ -149,10 +150,14 @@ def _seat_checks(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLim
 
 
 def _feed_checks(evidence: InsertionEvidence, task: JudgedTask) -> Checks:
-    return (
+    checks = [
         LimitCheck(HELD, _known(evidence.held_way_m) / _MM, _HELD_MM, "mm"),
         LimitCheck(WITH_FEED, _known(evidence.with_feed_n), most_with_feed_n(task.cell), "N"),
-    )
+    ]
+    if task.fit.contacts is not None:
+        unrubbed_mm = _known(evidence.unrubbed_way_m) / _MM
+        checks.append(LimitCheck(UNRUBBED, unrubbed_mm, _HELD_MM, "mm"))
+    return tuple(checks)
 
 
 def _capture_checks(capture: LateralCapture | None, task: JudgedTask) -> Checks:

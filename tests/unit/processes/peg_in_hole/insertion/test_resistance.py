@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cellctl.cell.contact_motion.motions import ContactSample
-from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m
+from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.plan.task import PartContacts
 from tests.unit.processes.peg_in_hole.tasks import pin
 
@@ -72,11 +72,11 @@ def test_friction_at_two_points_explains_itself() -> None:
 
 def test_contacts_hold_a_part_back_from_their_depth_on_and_with_no_more_than_they_take() -> None:
     points = [(1.0, 0.5), (6.0, 0.5), (6.5, 40.0), (10.0, 30.0), (10.2, 50.0)]
-    stated = PartContacts(6.0 * MM, 40.0)
+    stated = PartContacts(6.0 * MM, 6.5 * MM, 25.0, 40.0)
     assert held_mm(felt(points), stated) < 0.05
     assert held_mm(felt(points)) > 3.0
-    assert held_mm(felt(points), PartContacts(8.0 * MM, 40.0)) > 1.0
-    assert held_mm(felt(points), PartContacts(6.0 * MM, 20.0)) > 1.0
+    assert held_mm(felt(points), PartContacts(8.0 * MM, 8.5 * MM, 25.0, 40.0)) > 1.0
+    assert held_mm(felt(points), PartContacts(6.0 * MM, 6.5 * MM, 10.0, 20.0)) > 1.0
 
 
 def test_a_chamfer_does_not_count() -> None:
@@ -87,3 +87,25 @@ def test_a_chamfer_does_not_count() -> None:
 def test_a_moment_that_was_not_recorded_explains_nothing() -> None:
     feed = [replace(one, moment_n_m=np.full(3, np.nan)) for one in felt(slipping(8.7, 0.85))]
     assert held_mm(feed) == pytest.approx(0.85, abs=0.1)
+
+
+PLUG = replace(FIT, contacts=PartContacts(6.0 * MM, 6.5 * MM, 25.0, 40.0), depth_m=10.0 * MM)
+
+
+def test_a_plug_feels_its_contacts_on_its_way() -> None:
+    points = [(1.0, 0.5), (6.0, 0.5), (6.9, 40.0), (10.2, 30.0), (10.4, 50.0)]
+    assert unrubbed_way_m(felt(points), PLUG, STIFFNESS_N_M) == 0.0
+    assert unrubbed_way_m(felt(points), FIT, STIFFNESS_N_M) is None
+
+
+@pytest.mark.parametrize("grip_n", [5.0, 10.0, 20.0])
+def test_a_plug_that_slips_before_its_contacts_does_not_feel_them(grip_n: float) -> None:
+    # Blocked at 6 mm, and a stop in the fingers where the seat would be.
+    slips = 6.0 + 0.01 * grip_n
+    points = [(1.0, 0.5), (6.0, 0.5), (slips, grip_n), (10.0 + 0.01 * grip_n, grip_n)]
+    feed = felt([*points, (10.0 + 0.5, 50.0)])
+    found_m = unrubbed_way_m(feed, PLUG, STIFFNESS_N_M)
+    assert found_m is not None
+    # From 6.8 to 9.7 mm by the drawing.
+    assert found_m / MM == pytest.approx(2.9, abs=0.1)
+    assert held_way_m(feed, PLUG, FRICTION, STIFFNESS_N_M) / MM < 0.2

@@ -3,6 +3,7 @@ from dataclasses import fields, replace
 import pytest
 
 from cellctl.processes.peg_in_hole.faults import ForceActsWithFeed, PegNotHeld, PegSlipped
+from cellctl.processes.peg_in_hole.plan.task import PartContacts
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, PegSeatLimits, judge_peg
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
@@ -14,6 +15,7 @@ GOOD = InsertionEvidence(
     seat_force_n=10.0,
     seat_slope_n_m=0.8e6,
     held_way_m=0.02e-3,
+    unrubbed_way_m=0.0,
     with_feed_n=0.5,
     capture=LateralCapture(4, 0.04e-3, 0.05e-3, 0.01e-3, 30.0),
     greatest_force_n=12.0,
@@ -36,7 +38,9 @@ def test_all_items_make_an_inserted_peg() -> None:
     [field.name for field in fields(InsertionEvidence) if field.name != "retouch_error_m"],
 )
 def test_what_is_unknown_is_not_inserted(name: str) -> None:
-    judgement = judge_peg(replace(GOOD, **{name: None}), pin(), SEAT)
+    task = pin()
+    task = replace(task, fit=replace(task.fit, contacts=PartContacts(6e-3, 7e-3, 2.0, 5.0)))
+    judgement = judge_peg(replace(GOOD, **{name: None}), task, SEAT)
     assert not judgement.inserted
     assert judgement.fault is not None
 
@@ -54,6 +58,14 @@ def test_a_great_force_asks_for_the_touch_on_the_rear() -> None:
 def test_a_part_that_was_held_back_on_its_way_has_slipped() -> None:
     # Far below the grip force that is stated: the fingers rub with less than they were measured.
     judgement = judge_peg(replace(GOOD, held_way_m=0.3e-3), pin(), SEAT)
+    assert isinstance(judgement.fault, PegSlipped)
+
+
+def test_a_part_whose_contacts_were_not_felt_has_slipped() -> None:
+    task = pin()
+    task = replace(task, fit=replace(task.fit, contacts=PartContacts(6e-3, 7e-3, 2.0, 5.0)))
+    assert judge_peg(GOOD, task, SEAT).inserted
+    judgement = judge_peg(replace(GOOD, unrubbed_way_m=0.3e-3), task, SEAT)
     assert isinstance(judgement.fault, PegSlipped)
 
 
