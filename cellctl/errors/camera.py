@@ -95,3 +95,12 @@ class ExposureNotAdjustable(CameraError):
     text = "Exposure of this camera cannot be set from here"
     cause = "The protocol of its server has no request for it."
     remedy = "Set the exposure at the camera or its server."
+
+
+class ImageRepeated(CameraError):
+    """Two exposures have the same image, bit by bit: no sensor makes that."""
+
+    number = 233
+    text = "Camera repeats an image"
+    cause = "A frame grabber, server or driver hands out an old buffer under a new number and time."
+    remedy = "Switch the camera or its server off and on; if it comes again, exchange its driver."

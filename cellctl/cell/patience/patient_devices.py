@@ -4,6 +4,7 @@ from collections.abc import Coroutine, Mapping
 from typing import Any, Generic, TypeVar
 
 from cellctl.cell.patience.calls import PATIENCE_S, answer_within
+from cellctl.cell.patience.repeated_images import RepeatedImages
 from cellctl.errors import CellError
 from cellctl.interfaces import (
     Camera,
@@ -51,6 +52,10 @@ class PatientDevice(Device, Generic[D]):
 class PatientImager(PatientDevice[Imager], Generic[Imager]):
     """What camera and head share."""
 
+    def __init__(self, device: Imager, patience_s: float = PATIENCE_S) -> None:
+        super().__init__(device, patience_s)
+        self._repeated = RepeatedImages(device.name)
+
     async def serial_number(self) -> str:
         """Serial number of the device behind it."""
         return await self._answer(self._device.serial_number())
@@ -64,16 +69,20 @@ class PatientCamera(PatientImager[Camera], Camera):
     """A single camera."""
 
     async def grab(self) -> CameraImage:
-        """As the camera behind it."""
-        return await self._answer(self._device.grab())
+        """As the camera behind it; ``ImageRepeated`` for an image that is the last one."""
+        image = await self._answer(self._device.grab())
+        self._repeated.require_new({"image": image.pixels})
+        return image
 
 
 class PatientHead(PatientImager[StereoCamera], StereoCamera):
     """A stereo head."""
 
     async def grab(self) -> StereoPair:
-        """As the head behind it."""
-        return await self._answer(self._device.grab())
+        """As the head behind it; ``ImageRepeated`` for an image that is the last one."""
+        pair = await self._answer(self._device.grab())
+        self._repeated.require_new({"left image": pair.left, "right image": pair.right})
+        return pair
 
 
 class PatientTracker(PatientDevice[TargetTracker], TargetTracker):
