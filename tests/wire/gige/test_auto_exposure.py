@@ -57,6 +57,8 @@ class Plate:
         for centre in ((60, 60), (180, 70), (110, 130)):
             cv2.circle(light, centre, 12, 1.0, -1)
         grey = cv2.GaussianBlur(light, (0, 0), 0.8) * asked.exposure_us / 1000.0
+        # A sensor has noise, and an image that comes again is refused.
+        grey += np.random.default_rng(len(self.exposures_us)).normal(0.0, 0.5, grey.shape)
         data = np.clip(np.rint(grey), 0, 255).astype(np.uint8).ravel()
         return Exposed(Outcome.WHOLE, (WIDTH, HEIGHT), data)
 
