@@ -103,6 +103,13 @@ def _figures() -> Iterator[Mistake]:
         "recipes.0.fit.keys.window_deg",
         "or is it in radians?",
     )
+    contacts = "contacts = { depth_mm = 6.0, most_n = 40.0 }"
+    for old, new, key, said in (
+        ("6.0", "60.0", "depth_mm", "contacts begin after the peg has entered"),
+        ("40.0", "400.0", "most_n", "never passed"),
+    ):
+        where = f"recipes.0.fit.contacts.{key}"
+        yield Mistake(_INSERTION, contacts, contacts.replace(old, new), where, said)
 
 
 TOUCHING_CELLS = (*_sensors(), *_places(), *_figures())

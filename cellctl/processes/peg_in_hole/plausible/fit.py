@@ -43,8 +43,21 @@ def fit_bounds(recipe: PegRecipe, key: str) -> Iterator[Bound]:
         )
         least_deg = degrees(_LEAST_KEY_PLAY_MM / fit.peg_radius_mm)
         yield Bound(f"{where}.keys.window_deg", fit.keys.window_deg, why, least=least_deg)
+    yield from _contacts(recipe, where, entry_mm)
     yield _touches(recipe, key)
     yield from _proud(recipe, key)
+
+
+def _contacts(recipe: PegRecipe, where: str, entry_mm: float) -> Iterator[Bound]:
+    contacts = recipe.fit.contacts
+    if contacts is None:
+        return
+    why = f"contacts begin after the peg has entered, before depth_mm = {recipe.fit.depth_mm:g}"
+    depth_mm, most_mm = contacts.depth_mm, recipe.fit.depth_mm
+    yield Bound(f"{where}.contacts.depth_mm", depth_mm, why, least=entry_mm, most=most_mm)
+    why = "insertion_n: contacts that take more are never passed"
+    most_n = recipe.forces.insertion_n
+    yield Bound(f"{where}.contacts.most_n", contacts.most_n, why, most=most_n)
 
 
 def _touches(recipe: PegRecipe, key: str) -> Bound:
