@@ -165,6 +165,9 @@ def _force(force: ForceReport) -> Text:
     felt = ", ".join(
         f"{one.axis} {one.value:.1f} {one.unit}" for one in force.wrench if one.value is not None
     )
+    if not felt:
+        # After a free move: the signs of the sensor's axes say nothing of the part.
+        felt = "in the axes of the sensor; shown in those of the part from the next tare on"
     return Text(felt + (f"; limit {force.limit_n:g} N" if force.limit_n is not None else ""))
 
 
