@@ -14,7 +14,8 @@ from cellctl.processes.peg_in_hole.stations import PegCell, peg_recipes, weight_
 CLEAR_OF_FACE_M = 15e-3
 """Height over the face from which on a joint move may begin."""
 _BESIDE_M = 50e-3
-"""Farther than this from the axis of a hole nothing stands in the way."""
+"""Farther than this from the axis of a hole nothing stands in the way. Nothing is touched there
+either, unless the circle of the touches is wider."""
 _TWIST_N_M = 2.0
 _SLOW_M_S, _SLOW_M_S2 = 5e-3, 0.05
 
@@ -69,9 +70,11 @@ def _missing_m(recipe: PegRecipe, base_T_flange: RigidTransform) -> float:
     base_T_hole = pose_from_xyzabc(recipe.base_T_hole.pose)
     tip = base_T_hole.inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_tip)
     x_m, y_m, height_m = tip.translation.tolist()
-    if np.hypot(x_m, y_m) > _BESIDE_M:
+    place = recipe.base_T_hole
+    touched_m = (place.face_radius_mm + place.uncertainty_mm) * MM
+    if np.hypot(x_m, y_m) > max(_BESIDE_M, touched_m):
         return 0.0
-    uncertain_m = recipe.base_T_hole.height_uncertainty_mm * MM
+    uncertain_m = place.height_uncertainty_mm * MM
     return max(0.0, CLEAR_OF_FACE_M + uncertain_m - float(height_m))
 
 

@@ -44,23 +44,25 @@ class NewGuard(TinyGuard):
         self.load = compensation
 
 
-def flange_at(depth_mm: float) -> RigidTransform:
-    """The flange with the tip so deep in the hole."""
+def flange_at(depth_mm: float, x_mm: float = 0.0) -> RigidTransform:
+    """The flange with the tip so deep in the hole, or so deep beside it."""
     (recipe,) = peg_recipes(CELL)
     hole = pose_from_xyzabc(recipe.base_T_hole.pose)
-    place = RigidTransform.from_components(np.array([0.0, 0.0, -depth_mm * 1e-3]), OVER)
+    place = RigidTransform.from_components(np.array([x_mm, 0.0, -depth_mm]) * 1e-3, OVER)
     return hole * place * pose_from_xyzabc(recipe.flange_T_tip).inv()
 
 
-def left_at(depth_mm: float) -> tuple[PegCell, StillRobot, NewGuard]:
+def left_at(
+    depth_mm: float, x_mm: float = 0.0, config: Any = CELL
+) -> tuple[PegCell, StillRobot, NewGuard]:
     guard = NewGuard()
-    robot = StillRobot("arm", flange=flange_at(depth_mm), watched_by=guard)
+    robot = StillRobot("arm", flange=flange_at(depth_mm, x_mm), watched_by=guard)
     (sensor,) = CELL.force_sensors
     arm = GuardedRobot(
         cast(Robot, robot), CELL.robots[CELL.force_sensors[sensor].mounted_on], sensor,
         cast(GuardClient, guard), CELL.force_sensors[sensor],
     )  # fmt: skip
-    cell: Any = SimpleNamespace(config=CELL, trips_awaited=lambda _: nullcontext())
+    cell: Any = SimpleNamespace(config=config, trips_awaited=lambda _: nullcontext())
     nothing: Any = None
     return PegCell(cell, arm, nothing), robot, guard
 
@@ -104,6 +106,15 @@ async def test_the_force_on_a_tip_in_its_hole_is_told_in_its_axes_without_the_we
     # A tare would hide the very contact that is asked for.
     assert "tare" not in guard.asked
     assert robot.moves == []
+
+
+async def test_from_a_touch_on_a_wide_circle_the_arm_leaves_straight_as_well() -> None:
+    (recipe,) = peg_recipes(CELL)
+    place = recipe.base_T_hole.model_copy(update={"face_radius_mm": 70.0})
+    wide = recipe.model_copy(update={"base_T_hole": place})
+    cell, robot, _ = left_at(0.0, x_mm=70.0, config=SimpleNamespace(recipes=(wide,)))
+    await leave_hole(cell)
+    assert [move.kind for move in robot.moves] == ["linear", "joint"]
 
 
 async def test_away_from_the_hole_the_weight_is_known_and_the_axes_are_the_sensors() -> None:
