@@ -161,9 +161,7 @@ def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Ex
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}")
-        definition = process_definition(recipe.process)
-        for what in definition.not_yet_checked(cell, recipe, cell_file.parent):
-            console.print(f"     not checked yet: {what}", style="yellow")
+    _say_what_is_not_yet_checked(console, cell, cell_file.parent)
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
     if examined.remarks:
@@ -193,6 +191,17 @@ def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:
                 "settings say nothing of its kinematics)",
                 style="yellow",
             )
+
+
+def _say_what_is_not_yet_checked(console: Console, cell: CellConfig, folder: Path) -> None:
+    """Each line once: recipes share cameras and boards."""
+    lines = dict.fromkeys(
+        what
+        for recipe in cell.recipes
+        for what in process_definition(recipe.process).not_yet_checked(cell, recipe, folder)
+    )
+    for what in lines:
+        console.print(f"  not checked yet: {what}", style="yellow")
 
 
 def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:

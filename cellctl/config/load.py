@@ -69,14 +69,17 @@ def examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None, dict[str,
 
 
 def placed(found: Iterable[ConfigIssue], lines: dict[str, int]) -> list[ConfigIssue]:
-    """The same findings with the lines in which they stand."""
+    """The same findings with the lines in which they stand, each once.
+
+    Recipes of one cell share its devices, and each of them finds what is wrong with those.
+    """
     return [
         replace(
             issue,
             line=line_of(issue.key, lines),
             against=tuple(replace(one, line=lines.get(one.key)) for one in issue.against),
         )
-        for issue in found
+        for issue in dict.fromkeys(found)
     ]
 
 

@@ -228,7 +228,7 @@ def _require_one_camera(paths: Sequence[Path]) -> None:
         if other is not None and _says(path, "right"):
             raise FileInvalid(
                 f"{other.name} and {path.name} are named as of two cameras: narrow --images to "
-                "those of one"
+                "those of one, or rename them if left and right are places of the board"
             )
 
 

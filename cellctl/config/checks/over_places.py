@@ -90,8 +90,8 @@ def _bounds(over: Over) -> tuple[float, float, float, float]:
     """Most mm beside the place, most degrees, least and greatest height over it in mm."""
     if over.height_mm is None:
         return BESIDE_MM, TURNED_DEG, 0.0, HIGHEST_MM
-    lowest_mm, highest_mm = over.height_mm - GAUGED_MM, over.height_mm + GAUGED_MM
-    return NEAR_MM, NEAR_DEG, max(lowest_mm, 0.0), highest_mm
+    # By the figures of the file the tool may stand a little below a place that it was just above.
+    return NEAR_MM, NEAR_DEG, over.height_mm - GAUGED_MM, over.height_mm + GAUGED_MM
 
 
 def unmeasured_height(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:

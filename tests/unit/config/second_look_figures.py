@@ -94,7 +94,7 @@ FIGURES = (
         "range = [5000.0, 5000.0, 5000.0",
         "range = [50.0, 50.0, 50.0",
         "force_sensors.force.settings.range",
-        "at least 2222 N",
+        "at least 2222.3 N",
     ),
     deck("stale_ms = 300.0", "stale_ms = 3000.0", "force_sensors.force.stale_ms", "2 to 500"),
     deck(

@@ -15,7 +15,7 @@ def _sensors() -> Iterator[Mistake]:
     moments = _SIX.replace("10.0", "10000.0")
     for file in _TOUCHING:
         yield Mistake(file, _SIX, moments, _RANGE, "or were the moments in N·mm?")
-        for limit, least in (("190.0", "at least 211 N"), ("199.0", "at least 221 N")):
+        for limit, least in (("190.0", "at least 211.2 N"), ("199.0", "at least 221.2 N")):
             yield Mistake(
                 file,
                 "free_force_n = 60.0",

@@ -82,13 +82,13 @@ def how_it_lies(sensor: ForceSensorConfig) -> str:
     without a load that is weighed never has one.
     """
     axes = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()
-    turned_deg = math.degrees(math.atan2(axes[1, 0], axes[0, 0]))
+    turned_deg = round(math.degrees(math.atan2(axes[1, 0], axes[0, 0])))
     along = "along" if axes[2, 2] > 0.0 else "against"
     # By convention a driver that can turn all signs names it so.
     signs = "; inverted = true turns all its signs" if sensor.settings.get("inverted") else ""
     return (
-        f"its z points {along} that of the flange, its x is turned by {turned_deg:.0f} deg about z "
-        f"of the flange{signs}. A push by hand shows whether it is: while the tool is pushed "
+        f"its z points {along} that of the flange, its x is turned by {turned_deg} deg about z "
+        f"of the flange{signs}. A push by hand shows whether this is so: while the tool is pushed "
         "towards the flange, `cellctl check --connect` must show less along z (more negative) than "
         "at rest; while it is pushed along x of the flange, more along x"
     )

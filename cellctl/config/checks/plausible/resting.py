@@ -37,8 +37,9 @@ def resting_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
             outside = [pose for pose in robot.poses_deg if pose not in inside]
             others = ", ".join(other for other in config.robots if other != name)
             for pose in sorted(resting.get(name, set()) & set(inside)):
+                lie = "lies" if len(outside) == 1 else "lie"
                 slip = (
-                    f"; {', '.join(outside)} lies outside of it: did you exchange them?"
+                    f"; outside of it {lie} {', '.join(outside)}: did you exchange them?"
                     if outside
                     else ""
                 )

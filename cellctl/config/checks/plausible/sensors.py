@@ -1,5 +1,6 @@
 """Force sensors that are too slow or too weak for their guard."""
 
+import math
 from collections.abc import Iterator, Set
 
 from cellctl.config.cell import CellConfig
@@ -61,8 +62,10 @@ def _range(path: str, sensor: ForceSensorConfig) -> Iterator[ConfigIssue]:
     for key, (limit, most, unit) in limits.items():
         if limit > _USABLE * most:
             # The sensor clips before the limit: the guard would never see it passed.
+            # Rounded up: what is written here has to be enough when somebody writes it.
+            least = math.ceil(10.0 * limit / _USABLE) / 10.0
             allowed = (
-                f"at least {limit / _USABLE:.0f} {unit} in each axis, for {path}.{key} = {limit:g} "
+                f"at least {least:g} {unit} in each axis, for {path}.{key} = {limit:g} "
                 "and a tenth that offset and weight take, or a lower limit"
             )
             yield ConfigIssue(f"{path}.settings.range", str(measuring), allowed)

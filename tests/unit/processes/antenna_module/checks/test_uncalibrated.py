@@ -49,3 +49,14 @@ def test_a_new_cell_is_told_what_nothing_contradicts_yet(new: Path, tmp_path: Pa
     calibrated = written(tmp_path / "calibrated", "antenna.toml")
     done = CliRunner().invoke(whole_app(), ["check", str(calibrated)])
     assert "not checked yet" not in done.stdout
+
+
+def test_what_recipes_share_is_said_once(new: Path) -> None:
+    text = new.read_text(encoding="utf-8").replace("[110.0, 0.0, -50.0,", "[110.0, 0.0, 50.0,")
+    recipe = text[text.index("[[recipes]]") :]
+    other = recipe.replace("id = 1", "id = 2").replace('name = "', 'name = "other ')
+    new.write_text(f"{text}\n{other}", encoding="utf-8")
+    done = CliRunner().invoke(whole_app(), ["check", str(new)])
+    assert "recipe 2" in done.stdout
+    assert done.stdout.count("160 mm from what tray_look sees") == 1
+    assert done.stdout.count("procedure 201") == 1

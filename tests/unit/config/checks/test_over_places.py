@@ -1,0 +1,29 @@
+"""Poses that were taught over a place, held against the height that a rule showed."""
+
+from pathlib import Path
+
+import pytest
+
+from cellctl.config import problems_before_commissioning
+from tests.unit.config.test_mistakes import written
+
+_SOCKET = "pose = [500.0, -200.0, 200.0, 180.0, 0.0, 0.0]\ntaught_above_mm = 10.0"
+
+
+@pytest.mark.parametrize(
+    ("socket_mm", "taught_mm", "good"),
+    [
+        (204.5, 10.0, True),
+        # Just over the place, which by the figures lies a millimetre higher.
+        (211.0, 3.0, True),
+        (215.0, 3.0, False),
+        (216.0, 10.0, False),
+    ],
+)
+def test_a_height_that_was_measured_may_be_off_by_some_millimetres(
+    tmp_path: Path, socket_mm: float, taught_mm: float, *, good: bool
+) -> None:
+    new = _SOCKET.replace("-200.0, 200.0", f"-200.0, {socket_mm}")
+    new = new.replace("above_mm = 10.0", f"above_mm = {taught_mm}")
+    found = problems_before_commissioning(written(tmp_path, "antenna.toml", _SOCKET, new))
+    assert [one.key for one in found] == ([] if good else ["robots.arm.poses_deg.above_socket"])
