@@ -65,8 +65,12 @@ async def test_one_camera_of_a_head_that_repeats_is_enough() -> None:
         await head.grab()
 
 
+@pytest.mark.parametrize("other", [False, True], ids=["all", "but for a dead or hot pixel"])
 @pytest.mark.parametrize("grey", [0, 255])
-def test_an_image_of_one_grey_is_left_to_the_checks_of_its_light(grey: int) -> None:
+def test_an_image_of_one_grey_is_left_to_the_checks_of_its_light(grey: int, other: bool) -> None:
     repeated = RepeatedImages("eye")
     for _ in range(2):
-        repeated.require_new({"image": np.full((4, 4), grey, dtype=np.uint8)})
+        image = np.full((4, 4), grey, dtype=np.uint8)
+        if other:
+            image[1, 2] = 255 - grey
+        repeated.require_new({"image": image})
