@@ -90,9 +90,18 @@ class JobRecord:
             fault_number=fault.number if fault else None,
             fault=str(fault) if fault else None,
         )
-        # The journal is another place than the store: it shows a run that was cut off the ledger.
-        head = await self.store.do(RunStore.ledger_head)
-        _log.info("run closed", run=self.number, result=outcome.value, ledger_head=str(head))
+        _log.info(
+            "run closed", run=self.number, result=outcome.value, ledger_head=await self._head()
+        )
+
+    async def _head(self) -> str:
+        """For the journal, which is another place than the store: it shows a run that was cut off
+        the ledger."""
+        try:
+            return str(await self.store.do(RunStore.ledger_head))
+        # The run is closed and sealed: a part is no worse for a line of the journal.
+        except RecordsError as error:
+            return f"not read: {error}"
 
     async def _keep_motion(self, motion: MotionRecorder) -> None:
         try:
