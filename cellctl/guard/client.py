@@ -70,6 +70,7 @@ class GuardClient:
         self._serial = ""
         self._degraded: tuple[str, ...] = ()
         self._gravity_compensation: Message | None = None
+        self.tared = False  # since the guard was started, and load and frame were set
         self._wrench_frame: Message | None = None
         """The wrench frame that was set last; None for the sensor's own."""
 
@@ -83,7 +84,7 @@ class GuardClient:
         if self.running:
             return
         await self.stop()
-        self._stopping = self._ready = False
+        self._stopping = self._ready = self.tared = False
         self._fault = None
         self._started = asyncio.get_running_loop().create_future()
         slots, reply_s = self._settings.ring_slots, self._settings.reply_timeout_s
@@ -137,7 +138,7 @@ class GuardClient:
         """Subtract what hangs on the sensor from now on; drops the tare."""
         load = gravity_compensation_to_json(compensation)
         await self._request("gravity_compensation", **load)
-        self._gravity_compensation = load
+        self._gravity_compensation, self.tared = load, False
 
     @property
     def gravity_compensated(self) -> bool:
@@ -154,7 +155,7 @@ class GuardClient:
         own = RigidTransform.identity()
         frame = wrench_frame_to_json(own if sensor_T_wrench is None else sensor_T_wrench)
         await self._request("wrench_frame", **frame)
-        self._wrench_frame = None if sensor_T_wrench is None else frame
+        self._wrench_frame, self.tared = (None if sensor_T_wrench is None else frame), False
 
     @property
     def in_part_frame(self) -> bool:
@@ -164,9 +165,9 @@ class GuardClient:
     async def tare(self, duration_s: float) -> TareResult:
         """Average the wrench over the next ``duration_s`` and subtract that from then on."""
         result = await self._request("tare", duration_s, duration_s=duration_s)
-        return TareResult(
-            np.array(result["mean"]), np.array(result["sigma"]), int(result["samples"])
-        )
+        self.tared = True
+        mean, sigma = np.array(result["mean"]), np.array(result["sigma"])
+        return TareResult(mean, sigma, int(result["samples"]))
 
     async def arm(self, limits: GuardLimits) -> None:
         """Watch these limits from now on; they replace those watched before."""

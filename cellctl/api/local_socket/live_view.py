@@ -169,12 +169,14 @@ class LiveView:
     def _least_n(self, name: str) -> float:
         """Force from which on the arm of a sensor may press.
 
-        In the sensor's own axes nothing was tared since the last free move, or since the start:
-        what is felt then is as well what the compensation leaves of the load.
+        In the sensor's own axes nothing was tared since the last free move, and after a start of
+        the guard nothing at all: what is felt then is as well what the compensation leaves of the
+        load.
         """
         config = self._cell.config
         load = config.robots[config.force_sensors[name].mounted_on].load
-        if self._cell.guards[name].in_part_frame or load is None:
+        guard = self._cell.guards[name]
+        if load is None or (guard.in_part_frame and guard.tared):
             return PRESSES_N
         return max(PRESSES_N, _UNTARED_SHARE * load.mass_kg * GRAVITY_M_S2)
 

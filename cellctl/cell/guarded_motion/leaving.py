@@ -27,10 +27,10 @@ async def pressed_n(guard: GuardClient, inwards: float, most_n: float) -> float:
 
     To be asked before a tare, which hides it: a part that is drawn out changes the force by this
     before it is pulled at all. ``inwards`` is 1 where z of the guard's frame points into the place
-    and -1 where it points out. Without a frame of the part the guard has been started anew and
-    nobody knows: ``most_n``.
+    and -1 where it points out. Without a frame of the part, or a zero that was taken in it, nobody
+    knows: ``most_n``. So it is once daemon or guard have been started anew.
     """
-    if not guard.in_part_frame:
+    if not (guard.in_part_frame and guard.tared):
         return most_n
     begin_s = now_s()
     await asyncio.sleep(_READING_S)

@@ -26,6 +26,7 @@ class TinyGuard:
     trip: GuardTrip | None = None
     gravity_compensated: bool = True
     in_part_frame: bool = True
+    tared: bool = True
     sensor_T_wrench: RigidTransform | None = None
     """The part's frame that was given last; ``raw`` is not turned into it."""
     armed: bool = False
@@ -47,16 +48,17 @@ class TinyGuard:
 
     async def set_gravity_compensation(self, compensation: object) -> None:
         self._do("set_gravity_compensation")
-        self.gravity_compensated = True
+        self.gravity_compensated, self.tared = True, False
 
     async def set_wrench_frame(self, sensor_T_wrench: object) -> None:
         self._do("set_wrench_frame")
-        self.in_part_frame = sensor_T_wrench is not None
+        self.in_part_frame, self.tared = sensor_T_wrench is not None, False
         if isinstance(sensor_T_wrench, RigidTransform):
             self.sensor_T_wrench = sensor_T_wrench
 
     async def tare(self, duration_s: float) -> TareResult:
         self._do("tare")
+        self.tared = True
         return TareResult(np.zeros(6), np.ones(6), 100)
 
     async def arm(self, limits: GuardLimits) -> None:

@@ -81,10 +81,16 @@ async def test_the_weight_is_known_before_the_arm_leaves_the_hole(armed: bool) -
         np.testing.assert_allclose(load.A[0, 0], recipe.load.mass_kg * 9.80665)
 
 
-@pytest.mark.parametrize(("in_frame", "pressed_n"), [(True, 25.0), (False, 30.0)])
-async def test_the_press_that_a_stop_has_left_is_no_pull(in_frame: bool, pressed_n: float) -> None:
+@pytest.mark.parametrize(
+    ("in_frame", "tared", "pressed_n"),
+    [(True, True, 25.0), (False, True, 30.0), (True, False, 30.0)],
+    ids=["stopped", "after a free move", "guard started anew"],
+)
+async def test_the_press_that_a_stop_has_left_is_no_pull(
+    in_frame: bool, tared: bool, pressed_n: float
+) -> None:
     cell, _, guard = left_at(5.0)
-    guard.in_part_frame = in_frame
+    guard.in_part_frame, guard.tared = in_frame, tared
     guard.raw = guard.raw * 0.05 - np.array([0.0, 0.0, 25.0, 0.0, 0.0, 0.0])
     await leave_hole(cell)
     (recipe,) = peg_recipes(CELL)
