@@ -1,8 +1,9 @@
 """Reads a drawing from TOML into its model, with words for every mistake."""
 
 import tomllib
+from functools import lru_cache
 from pathlib import Path
-from typing import Annotated, Any, TypeVar
+from typing import Annotated, Any, TypeVar, cast
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -33,13 +34,18 @@ M = TypeVar("M", bound=Table)
 def parse_toml(content: bytes, name: str, model: type[M], invalid: type[CellError]) -> M:
     """The content of a file of that name; raises ``invalid`` with everything that is wrong."""
     try:
-        data = tomllib.loads(content.decode())
-    except (ValueError, RecursionError) as error:
-        raise invalid(f"{name} is not TOML: {error}") from error
-    try:
-        return model.model_validate(as_tuples(data))
+        return cast(M, _understood(content, model))
     except ValidationError as error:
         raise invalid(f"{name}: {error_words(error)}") from error
+    except (ValueError, RecursionError) as error:
+        raise invalid(f"{name} is not TOML: {error}") from error
+
+
+@lru_cache(maxsize=32)
+def _understood(content: bytes, model: type[Table]) -> Table:
+    # A check of a cell asks for its drawings some ten times, and to compare a pattern with its
+    # mirror image takes most of the time.
+    return model.model_validate(as_tuples(tomllib.loads(content.decode())))
 
 
 def read_bytes(path: Path, invalid: type[CellError]) -> bytes:
