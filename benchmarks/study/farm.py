@@ -18,7 +18,7 @@ _AHEAD = 3
 
 
 @contextmanager
-def farm(scheduler: str | None, workers: int) -> Iterator[Client]:
+def farm(scheduler: str | None, workers: int, *, connect_s: float = CONNECT_S) -> Iterator[Client]:
     """A cluster of this computer, or the one of a scheduler; raises ``FarmError``."""
     if scheduler is None:
         with (
@@ -30,7 +30,7 @@ def farm(scheduler: str | None, workers: int) -> Iterator[Client]:
             yield client
         return
     try:
-        client = Client(scheduler, timeout=CONNECT_S)
+        client = Client(scheduler, timeout=connect_s)
     except (OSError, TimeoutError, ValueError) as error:
         raise FarmError(f"no scheduler at {scheduler}: {error}") from error
     with client:

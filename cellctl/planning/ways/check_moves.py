@@ -63,8 +63,8 @@ def _require_known(scene: CellScene, procedures: frozenset[int]) -> None:
         unknown = sorted(solid.absent_in - procedures)
         if unknown:
             raise ConfigInvalid(
-                f"{solid.name}: absent_in names {unknown}; procedures that move an arm without a "
-                f"run: {sorted(procedures)}"
+                f"{solid.name}: absent_in names {unknown}; procedures with moves that no "
+                f"run makes: {sorted(procedures)}"
             )
 
 

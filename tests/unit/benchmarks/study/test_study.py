@@ -13,6 +13,8 @@ from typer.testing import CliRunner
 
 from benchmarks.study import __main__ as program
 from benchmarks.study.chart import draw
+from benchmarks.study.farm import farm
+from benchmarks.study.farm_error import FarmError
 from benchmarks.study.kinds import KINDS, run_seed
 from benchmarks.study.outcome import StudyOutcome
 from benchmarks.study.results import AnotherStudy, StudyResults, StudySource, source_digest
@@ -107,13 +109,21 @@ def test_a_trial_of_the_mating_is_plain_data() -> None:
     [
         (("another",), "there are: deck-loop, deck-mating"),
         (("peg-pin", "--imperfection", "light=2"), "scales no imperfection"),
-        (("deck-mating", "-n", "1", "--scheduler", "tcp://127.0.0.1:9"), "no scheduler at"),
+        (("deck-mating", "-n", "1", "--scheduler", "nowhere://here"), "no scheduler at"),
     ],
 )
 def test_what_cannot_be_is_said(tmp_path: Path, words: tuple[str, ...], said: str) -> None:
     done = CliRunner().invoke(program.app, [*words, "--out", str(tmp_path)])
     assert done.exit_code == 1
     assert said in done.stderr
+
+
+def test_a_scheduler_that_does_not_answer_is_waited_for_no_longer_than_said() -> None:
+    with (
+        pytest.raises(FarmError, match="no scheduler at"),
+        farm("tcp://127.0.0.1:9", 1, connect_s=0.5),
+    ):
+        pass
 
 
 def test_without_dask_it_says_what_to_install(
