@@ -82,10 +82,6 @@ FIGURES = (
         ),
     ),
     Kind(
-        "a part that contacts hold back is taken for one that slips, and the insertion ends (F591)",
-        ("recipes.fit.contacts.most_n /10",),
-    ),
-    Kind(
         "given up after one measurement, before any contact (F430)",
         ("recipes.pose_correction.max_iterations /10",),
     ),

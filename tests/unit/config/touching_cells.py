@@ -103,10 +103,14 @@ def _figures() -> Iterator[Mistake]:
         "recipes.0.fit.keys.window_deg",
         "or is it in radians?",
     )
-    contacts = "contacts = { depth_mm = 6.0, most_n = 40.0 }"
+    contacts = "contacts = { depth_mm = 6.0, full_mm = 6.5, least_n = 25.0, most_n = 40.0 }"
     for old, new, key, said in (
         ("6.0", "60.0", "depth_mm", "contacts begin after the peg has entered"),
         ("40.0", "400.0", "most_n", "never passed"),
+        ("6.5", "65.0", "full_mm", "0.8 mm before the seat"),
+        ("6.5", "0.65", "full_mm", "after they have begun"),
+        ("25.0", "250.0", "least_n", "at most most_n = 40"),
+        ("25.0", "2.5", "least_n", "a part that slides in freely"),
     ):
         where = f"recipes.0.fit.contacts.{key}"
         yield Mistake(_INSERTION, contacts, contacts.replace(old, new), where, said)

@@ -18,7 +18,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import OUT_OF_BAND_N
 from cellctl.processes.peg_in_hole.insertion.jam import jam_ratio
 from cellctl.processes.peg_in_hole.plan.task import FitGeometry
 
-_ZONE_M = 0.3e-3
+ZONE_M = 0.3e-3
 """Contacts may begin so much before their depth by the drawing: the tolerance of the seat."""
 _BANDS = 3
 """Parts of the rise at the seat, of which the steepest tells its stiffness: a force that stays lies
@@ -61,7 +61,7 @@ def unrubbed_way_m(
     axial_n = np.array([-float(sample.force_n[2]) for sample in feed])
     # Where the tip is: the arm goes on by what it gives way.
     tip_m = depth_m - axial_n / stiffness_n_m
-    between = (tip_m > contacts.full_m + _ZONE_M) & (tip_m < fit.depth_m - _ZONE_M)
+    between = (tip_m > contacts.full_m + ZONE_M) & (tip_m < fit.depth_m - ZONE_M)
     slack = between & (axial_n < contacts.least_n)
     return float(np.diff(depth_m)[slack[1:]].sum())
 
@@ -82,7 +82,7 @@ def _most_n(depth_m: Array, fit: FitGeometry) -> Array:
     """Greatest force at each depth that a good part may meet beside friction at its walls."""
     most_n = np.full(len(depth_m), OUT_OF_BAND_N)
     if fit.contacts is not None:
-        most_n[depth_m > fit.contacts.depth_m - _ZONE_M] += fit.contacts.most_n
+        most_n[depth_m > fit.contacts.depth_m - ZONE_M] += fit.contacts.most_n
     return most_n
 
 

@@ -5,8 +5,11 @@ from math import degrees
 
 from cellctl.config.checks.bound import Bound
 from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.insertion.felt import OUT_OF_BAND_N
+from cellctl.processes.peg_in_hole.insertion.resistance import ZONE_M
 from cellctl.processes.peg_in_hole.plan.cycle_plan import fit_geometry
 from cellctl.processes.peg_in_hole.recipe import Fit, PegRecipe
+from cellctl.processes.peg_in_hole.verdict.judgement import HELD_MM
 
 LEAST_FRICTION = 0.05
 """Of a dry pair; polytetrafluoroethylene on steel, the most slippery one in use, has about 0.04."""
@@ -58,6 +61,17 @@ def _contacts(recipe: PegRecipe, where: str, entry_mm: float) -> Iterator[Bound]
     why = "insertion_n: contacts that take more are never passed"
     most_n = recipe.forces.insertion_n
     yield Bound(f"{where}.contacts.most_n", contacts.most_n, why, most=most_n)
+    told_mm = 2 * ZONE_M / MM + HELD_MM
+    why = (
+        f"all contacts rub after they have begun (depth_mm = {depth_mm:g}), and {told_mm:g} mm "
+        f"before the seat (depth_mm = {most_mm:g} of the fit), or no slip is told by them"
+    )
+    full_mm, latest_mm = contacts.full_mm, most_mm - told_mm
+    yield Bound(f"{where}.contacts.full_mm", full_mm, why, least=depth_mm, most=latest_mm)
+    why = f"more than a part that slides in freely meets, at most most_n = {contacts.most_n:g}"
+    least_n = contacts.least_n
+    name = f"{where}.contacts.least_n"
+    yield Bound(name, least_n, why, least=OUT_OF_BAND_N, most=contacts.most_n)
 
 
 def _touches(recipe: PegRecipe, key: str) -> Bound:

@@ -29,7 +29,7 @@ from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 _MM = 1e-3
 # Items 1, 7, 5 and 4 of section 5.4.
 _SEAT_MM, _RETOUCH_MM, _STEADY_MM, _PLAY_MM = 0.3, 0.15, 0.1, 0.1
-_HELD_MM = 0.2
+HELD_MM = 0.2
 """A part that has slipped by more is told from one that has not (peg_slip of section 5.2)."""
 _LEAST_SLOPE = 0.3
 """Rise of the force at the seat over the stiffness of arm and contact."""
@@ -151,12 +151,12 @@ def _seat_checks(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLim
 
 def _feed_checks(evidence: InsertionEvidence, task: JudgedTask) -> Checks:
     checks = [
-        LimitCheck(HELD, _known(evidence.held_way_m) / _MM, _HELD_MM, "mm"),
+        LimitCheck(HELD, _known(evidence.held_way_m) / _MM, HELD_MM, "mm"),
         LimitCheck(WITH_FEED, _known(evidence.with_feed_n), most_with_feed_n(task.cell), "N"),
     ]
     if task.fit.contacts is not None:
         unrubbed_mm = _known(evidence.unrubbed_way_m) / _MM
-        checks.append(LimitCheck(UNRUBBED, unrubbed_mm, _HELD_MM, "mm"))
+        checks.append(LimitCheck(UNRUBBED, unrubbed_mm, HELD_MM, "mm"))
     return tuple(checks)
 
 
