@@ -5,6 +5,7 @@ from typing import Any
 
 _KINDS = {
     "taught": "the scenario of a fake cell",
+    "like": "the scenario of a fake cell",
     "hole": "the drawing of a part with its holes",
     "contact": "the drawing of a connector",
     "mark": "the drawing of marks",
