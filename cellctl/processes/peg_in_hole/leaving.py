@@ -1,4 +1,4 @@
-"""Brings the arm home, out of the hole first where a run has left it there; the force meanwhile."""
+"""Brings the arm home, out of the hole first where it is in one; shows what the tip feels there."""
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform

@@ -17,6 +17,8 @@ from cellctl.records.figures import Limit
 
 PULL_SPEED_M_S = 0.2e-3
 _AXIAL = 2
+_ROUNDING_M = 1e-9
+"""What sums of fine steps are off by; a last step of so much would move nothing."""
 
 
 async def verify(inserted: Inserted) -> Released:
@@ -61,7 +63,7 @@ async def _pull(run: PluggingRun, attempt: PushAttempt) -> float:
     begin_m = attempt.depth_m
     readings = [(begin_m, float((await attempt.read())[_AXIAL]))]
     pulled_m, pull_n = 0.0, 0.0
-    while pull_n < wanted_n and pulled_m < most_m - 1e-9:
+    while pull_n < wanted_n and pulled_m < most_m - _ROUNDING_M:
         pulled_m = min(pulled_m + FINE_M, most_m)
         pose = attempt.way.pose_at(begin_m - pulled_m)
         trip = await attempt.move(attempt.robot.step(pose, speed_m_s=PULL_SPEED_M_S))
