@@ -19,6 +19,8 @@ NEAR_MM, NEAR_DEG, GAUGED_MM = 10.0, 3.0, 5.0
 """A pose whose height was measured as it was taught: jogged to its place within a few millimetres
 and upright by a square. A rule is read to a millimetre or two, an arm whose geometry was not
 calibrated is off by as much, and so is a place that a drawing gives."""
+ROUND_DEG = 8.0
+"""Turn about its own axis of a round tool that was jogged by eye; slips are of 10 deg and more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,6 +40,8 @@ class Over:
     """How high over the place the tool was when the pose was taught; None where nobody measured."""
     any_turn: bool = False
     """Whether the tool may be turned about its z axis, as a camera may that looks at the place."""
+    is_round: bool = False
+    """Whether nobody aligns the tool about its z axis, as a pin without keys."""
 
 
 def flange_at(cell: CellConfig, robot: str, pose: str) -> RigidTransform | None:
@@ -50,9 +54,10 @@ def flange_at(cell: CellConfig, robot: str, pose: str) -> RigidTransform | None:
     return kinematics(joints_rad)
 
 
-def _turned_deg(tool_T_taught: RigidTransform, *, any_turn: bool) -> float:
-    if not any_turn:
-        return float(np.degrees(tool_T_taught.rotation.magnitude()))
+def _turned_deg(tool_T_taught: RigidTransform, over: Over) -> float:
+    turned_deg = float(np.degrees(tool_T_taught.rotation.magnitude()))
+    if not (over.any_turn or (over.is_round and turned_deg <= ROUND_DEG)):
+        return turned_deg
     along_z = float(tool_T_taught.rotation.as_matrix()[2, 2])
     return float(np.degrees(np.arccos(np.clip(along_z, -1.0, 1.0))))
 
@@ -64,7 +69,7 @@ def over_place_issues(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:
         return
     tool_T_taught = over.base_T_tool.inv() * base_T_flange * over.flange_T_tool
     x_mm, y_mm, z_mm = (float(one) for one in tool_T_taught.translation / MM)
-    turned_deg = _turned_deg(tool_T_taught, any_turn=over.any_turn)
+    turned_deg = _turned_deg(tool_T_taught, over)
     beside_mm, height_mm = float(np.hypot(x_mm, y_mm)), -z_mm
     most_mm, most_deg, least_height_mm, most_height_mm = _bounds(over)
     high_enough = least_height_mm <= height_mm <= most_height_mm

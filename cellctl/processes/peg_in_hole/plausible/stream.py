@@ -32,6 +32,7 @@ def over_hole(recipe: PegRecipe, key: str) -> Over:
         f"{key}.base_T_hole",
         (place, tip),
         height_mm=recipe.base_T_hole.taught_above_mm,
+        is_round=recipe.fit.keys is None,
     )
 
 

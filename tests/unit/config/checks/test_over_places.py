@@ -27,3 +27,21 @@ def test_a_height_that_was_measured_may_be_off_by_some_millimetres(
     new = new.replace("above_mm = 10.0", f"above_mm = {taught_mm}")
     found = problems_before_commissioning(written(tmp_path, "antenna.toml", _SOCKET, new))
     assert [one.key for one in found] == ([] if good else ["robots.arm.poses_deg.above_socket"])
+
+
+@pytest.mark.parametrize(
+    ("name", "turns_deg", "good"),
+    [
+        ("insertion-pin.toml", "7.0, 0.0, 0.0", True),
+        ("insertion-pin.toml", "7.0, 4.0, 0.0", False),
+        ("insertion-pin.toml", "10.0, 0.0, 0.0", False),
+        ("insertion-connector.toml", "7.0, 0.0, 0.0", False),
+    ],
+)
+def test_nobody_aligns_a_round_pin_about_its_axis(
+    tmp_path: Path, name: str, turns_deg: str, *, good: bool
+) -> None:
+    old = "pose = [500.0, -200.0, 200.0, 0.0, 0.0, 0.0]"
+    new = old.replace("0.0, 0.0, 0.0]", f"{turns_deg}]")
+    found = problems_before_commissioning(written(tmp_path, name, old, new))
+    assert [one.key for one in found] == ([] if good else ["robots.arm.poses_deg.above_hole"])
