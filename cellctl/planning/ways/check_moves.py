@@ -52,7 +52,9 @@ def check_moves(scene: CellScene) -> Iterator[CheckedMove]:
     Raises ``ConfigInvalid`` where the model names a procedure that moves nothing.
     """
     moves = list(stated_moves(scene))
-    _require_known(scene, frozenset[int]().union(*(move.procedures for move in moves)))
+    # Where no process states a move, that is what the caller has to say.
+    if moves:
+        _require_known(scene, frozenset[int]().union(*(move.procedures for move in moves)))
     for move in moves:
         yield check_move(scene, move)
 

@@ -109,7 +109,7 @@ PLACES = (
         "a robot of this zone",
     ),
     deck(
-        "base_frame_joints_deg = [0.0, -75.0, 120.0, 0.0, 45.0, 90.0]",
+        "base_frame_joints_deg = [0.0, -78.0, 120.0, 0.0, 45.0, 90.0]",
         "base_frame_joints_deg = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]",
         "processes.deck-to-frame.base_frame_joints_deg",
         "turns A1 and A2",

@@ -42,10 +42,10 @@ def test_a_picture_that_cannot_be_written_is_a_fault(tmp_path: Path) -> None:
 
 def test_a_cell_whose_processes_state_no_moves_is_not_free(tmp_path: Path) -> None:
     text = Path("config/deck.model.toml").read_text(encoding="utf-8")
-    model = tmp_path / "pin.model.toml"
+    model = tmp_path / "small.model.toml"
     model.write_text(text[: text.index("[robots.aux_1]")].replace("robots.main", "robots.arm"))
     with pytest.raises(NoMovesStated):
-        run("check", "config/antenna.toml", "--model", str(model))
+        run("check", "config/small.toml", "--model", str(model))
 
 
 @pytest.mark.long
