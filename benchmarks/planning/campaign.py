@@ -1,16 +1,20 @@
 """Ways of random cells: planned or refused with a number, and verified by MuJoCo's distances.
 
 Each planned way is looked at again by an independent library, every 1 mm that any body may have
-moved. Usage: python -m benchmarks.planning.campaign -n 100
+moved. Goes on where an earlier run ended. Usage: python -m benchmarks.planning.campaign -n 100
 """
 
-import argparse
+import json
 import time
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from itertools import pairwise, product
+from pathlib import Path
+from typing import Annotated
 
 import numpy as np
+import typer
 
 from benchmarks.planning.cells import random_cell
 from cellctl.errors.config import PlanningError
@@ -81,15 +85,31 @@ def _heads(scene: CellScene) -> list[str]:
     return [name for name in scene.arms if name != "main"]
 
 
-def main() -> None:
-    """Print a table of the outcomes."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("-n", "--cells", type=int, default=100)
-    parser.add_argument("--first-seed", type=int, default=1)
-    parser.add_argument("--look-mm", type=float, default=_LOOK_M / MM)
-    given = parser.parse_args()
-    seeds = range(given.first_seed, given.first_seed + given.cells)
-    outcomes = [try_cell(seed, given.look_mm * MM) for seed in seeds]
+def main(
+    n: Annotated[int, typer.Option("-n", min=1, help="Number of drawn cells.")] = 100,
+    first: Annotated[int, typer.Option(help="First seed.")] = 1,
+    look_mm: Annotated[float, typer.Option(min=0.1, help="Between two looks.")] = _LOOK_M / MM,
+    out: Annotated[Path, typer.Option(help="One line for each cell.")] = Path("runs/ways.jsonl"),
+) -> None:
+    """Print a table of the outcomes; exit code 1 where a planned way has less than its margins."""
+    out.parent.mkdir(parents=True, exist_ok=True)
+    text = out.read_text(encoding="utf-8") if out.exists() else ""
+    done = {found.seed: found for found in map(_read, text.splitlines())}
+    for seed in range(first, first + n):
+        if seed not in done:
+            done[seed] = try_cell(seed, look_mm * MM)
+            with out.open("a", encoding="utf-8") as file:
+                print(json.dumps(asdict(done[seed])), file=file)
+    outcomes = [done[seed] for seed in range(first, first + n)]
+    _print(outcomes, look_mm)
+    raise typer.Exit(int(any(one.least_slack_mm < 0.0 for one in outcomes)))
+
+
+def _read(line: str) -> Outcome:
+    return Outcome(**json.loads(line))
+
+
+def _print(outcomes: Sequence[Outcome], look_mm: float) -> None:
     for reason, count in sorted(Counter(one.reason for one in outcomes).items()):
         print(f"{count:4} {reason}")
     seconds = [one.seconds for one in outcomes]
@@ -98,10 +118,10 @@ def main() -> None:
     if planned:
         worst = min(planned, key=lambda one: one.least_slack_mm)
         print(
-            f"least room beyond the margins, by MuJoCo every {given.look_mm:g} mm: "
+            f"least room beyond the margins, by MuJoCo every {look_mm:g} mm: "
             f"{worst.least_slack_mm:.2f} mm (cell {worst.seed})"
         )
 
 
 if __name__ == "__main__":
-    main()
+    typer.run(main)
