@@ -33,9 +33,11 @@ class AnswerMissing(Exception):
 class DaemonLink:
     """Belongs to one event loop."""
 
-    def __init__(self, path: Path, hub: Hub) -> None:
+    def __init__(self, path: Path, hub: Hub, *, answer_s: float = ANSWER_S) -> None:
+        """``answer_s``: how long the answer to a command is waited for."""
         self._path = path
         self._hub = hub
+        self._answer_s = answer_s
 
     async def follow(self) -> None:
         """Feed the hub until cancelled; a daemon that is away is tried again and again."""
@@ -76,7 +78,7 @@ class DaemonLink:
             raise DaemonNotReached(f"{self._path}: {error.strerror or error}") from error
         try:
             writer.write(to_line(command))
-            async with asyncio.timeout(ANSWER_S):
+            async with asyncio.timeout(self._answer_s):
                 return parse_answer(await reader.readuntil())
         except (*_LOST, MessageMalformed) as error:
             # Also an answer that this page cannot read: the daemon did something before it gave it.

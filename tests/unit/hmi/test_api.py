@@ -4,12 +4,14 @@ import socket
 import time
 from io import BytesIO
 from pathlib import Path
+from typing import cast
 from urllib.parse import urlsplit
 
 import pytest
 from mcap.reader import make_reader
+from pydantic import BaseModel
 
-from cellctl.api.local_socket.messages import Failed, PlainCommand, Refused, StartCommand
+from cellctl.api.local_socket.messages import Answer, Failed, PlainCommand, Refused, StartCommand
 from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.conftest import TOKEN
 from tests.unit.hmi.http_client import Client, Reply
@@ -88,11 +90,15 @@ def test_a_fault_of_the_daemon_keeps_its_number(page: Client, paper: PaperDaemon
     problem(reply, 502, "fault-717")
 
 
+class _OfAnotherVersion(BaseModel):
+    kind: str = "perhaps"
+
+
 def test_without_an_answer_nobody_knows(page: Client, paper: PaperDaemon, tmp_path: Path) -> None:
-    paper.holds_back = True
+    paper.answer = cast(Answer, _OfAnotherVersion())
     reply = page.command({"request": "abort"})
     problem(reply, 504, "unknown")
-    paper.holds_back = False
+    assert len(paper.asked) == 1
     (tmp_path / "s").unlink()
     problem(page.command({"request": "abort"}), 503, "daemon-away")
 

@@ -14,6 +14,10 @@ from cellctl.hmi.hub import Hub
 from tests.unit.hmi.scripted_daemon import snapshot
 
 GOOD = json.dumps({**snapshot(), "mono_s": 0.0}).encode()
+COMMAND = PageCommand(
+    command=PlainCommand(request="reset"),
+    on_behalf=OnBehalf(person="anna", role="operate", panel="", key="key-0001"),
+)
 STRANGE = [
     b'{"kind": "snapshot"}',
     b'{"kind": "snapshot", "mono_s": null, "forces": []}',
@@ -66,13 +70,25 @@ def test_after_a_line_it_does_not_understand_it_connects_anew(
 def test_an_answer_it_does_not_understand_leaves_open_what_became_of_it(
     tmp_path: Path, strange: bytes
 ) -> None:
-    command = PageCommand(
-        command=PlainCommand(request="reset"),
-        on_behalf=OnBehalf(person="anna", role="operate", panel="", key="key-0001"),
-    )
-
     async def ask(link: DaemonLink, _hub: Hub) -> None:
         with pytest.raises(AnswerMissing):
-            await link.ask(command)
+            await link.ask(COMMAND)
 
     served(tmp_path / "s", [strange], ask)
+
+
+def test_an_answer_that_does_not_come_is_waited_for_no_longer_than_said(tmp_path: Path) -> None:
+    async def keep_silent(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        with contextlib.suppress(ConnectionError):
+            await reader.read()  # until the other one has left
+        writer.transport.abort()
+
+    async def ask() -> None:
+        async with await asyncio.start_unix_server(keep_silent, str(tmp_path / "s")):
+            link = DaemonLink(tmp_path / "s", Hub(), answer_s=0.2)
+            async with asyncio.timeout(5.0):
+                with pytest.raises(AnswerMissing):
+                    await link.ask(COMMAND)
+            await asyncio.sleep(0.05)
+
+    asyncio.run(ask())
