@@ -71,6 +71,15 @@ def sets_exposures(group: str, camera: CameraConfig) -> bool:
     return driver.set_exposure is not AdjustableExposure.set_exposure
 
 
+def measuring_range(sensor: ForceSensorConfig) -> list[float]:
+    """Three forces in N, then three moments in N·m; empty where the settings name none.
+
+    By convention a driver whose sensor has a measuring range names it ``range``.
+    """
+    written = sensor.settings.get("range")
+    return written if isinstance(written, list) and len(written) == 6 else []
+
+
 def sensor_rate_hz(sensor: ForceSensorConfig) -> float:
     """Samples a second that the sensor is set to: every sensor's ``Config`` has ``rate_hz``."""
     driver = plugins.load(plugins.FT_SENSOR, sensor.driver)

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import LoadConfig
+from cellctl.config.driver_settings import measuring_range
 from cellctl.config.issue import ConfigIssue
 
 G_M_S2 = 9.81
@@ -89,8 +90,8 @@ def _straight(cell: CellConfig, robot: str, load: LoadConfig) -> Iterator[Config
 def _weight(cell: CellConfig, robot: str, load: LoadConfig) -> Iterator[ConfigIssue]:
     weighed_n = (load.mass_kg - load.not_weighed_kg) * G_M_S2
     for name, sensor in cell.force_sensors.items():
-        measuring = sensor.settings.get("range")
-        if sensor.mounted_on != robot or not isinstance(measuring, list) or len(measuring) != 6:
+        measuring = measuring_range(sensor)
+        if sensor.mounted_on != robot or not measuring:
             continue
         most_n = min(measuring[:3])
         if weighed_n > most_n:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Set
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import ForceSensorConfig
-from cellctl.config.driver_settings import sensor_rate_hz
+from cellctl.config.driver_settings import measuring_range, sensor_rate_hz
 from cellctl.config.issue import ConfigIssue
 
 _LEAST_RATE_HZ = 100.0
@@ -41,10 +41,8 @@ def sensor_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
 
 
 def _range(path: str, sensor: ForceSensorConfig) -> Iterator[ConfigIssue]:
-    # By convention a driver whose sensor has a measuring range names it so: three forces in N,
-    # three moments in N·m.
-    measuring = sensor.settings.get("range")
-    if not isinstance(measuring, list) or len(measuring) != 6:
+    measuring = measuring_range(sensor)
+    if not measuring:
         return
     for three in (measuring[:3], measuring[3:]):
         if max(three) > _MOST_OVER_OTHERS * min(three):

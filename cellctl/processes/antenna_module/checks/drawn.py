@@ -7,6 +7,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import Bound, bound_issues
 from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.checks.plausible.sensors import NOISE_SHARE
+from cellctl.config.driver_settings import measuring_range
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.connector.connector import Connector
@@ -65,8 +66,8 @@ def pull_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
     """A sensor so strong that the pull of the test would be lost in its noise, or whose range is
     written too high."""
     name, pull_n = recipe.device(FORCE), recipe.insertion.pull_n
-    measuring = cell.force_sensors[name].settings.get("range")
-    if not isinstance(measuring, list) or len(measuring) != 6:
+    measuring = measuring_range(cell.force_sensors[name])
+    if not measuring:
         return
     most_n = pull_n / (_SIGMAS * NOISE_SHARE)
     if min(measuring[:3]) > most_n:
@@ -87,8 +88,8 @@ def _force_bound(cell: CellConfig, recipe: AntennaRecipe, key: str, connector: C
         f"greatest force_n of {connector.name}, {_MOST_PER_CONTACT_N:g} N for each of its {count} "
         "contacts: a pin that stubs would be pushed with what all of them take"
     )
-    measuring = cell.force_sensors[name].settings.get("range")
-    if isinstance(measuring, list) and len(measuring) == 6:
+    measuring = measuring_range(cell.force_sensors[name])
+    if measuring:
         clips_n = min(measuring[:3]) - recipe.module_mass_kg * G_M_S2
         if clips_n < most_n:
             most_n = clips_n

@@ -6,6 +6,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import Bound
 from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.checks.sensor_places import sensor_bounds, straight_mm
+from cellctl.config.driver_settings import measuring_range
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import FORCE
@@ -94,8 +95,8 @@ def _sensor(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[Bound]:
         why = f"z of the load: it hangs between the sensor and the tip, {before_mm:g} mm before it"
         z_mm = load.com_in_sensor_mm[2]
         yield Bound(f"{key}.load.com_in_sensor_mm", z_mm, why, least=0.0, most=before_mm)
-    measuring = sensor.settings.get("range")
-    if not isinstance(measuring, list) or len(measuring) != 6:
+    measuring = measuring_range(sensor)
+    if not measuring:
         return
     clips_n = min(measuring[:3])
     why = f"the range of force_sensors.{name}, {clips_n:g} N, less the weight of the load"

@@ -8,7 +8,7 @@ from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bound import Bound
 from cellctl.config.checks.plausible.sensors import NOISE_SHARE
-from cellctl.config.driver_settings import sensor_rate_hz
+from cellctl.config.driver_settings import measuring_range, sensor_rate_hz
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.calibrations import CONTACT_LOOP
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
@@ -40,8 +40,8 @@ def loop_bounds(
     why = "height_uncertainty_mm: beyond it the face is not found at all, so nothing is compared"
     most_mm = recipe.base_T_hole.height_uncertainty_mm
     yield Bound(f"{where}.panel_shift_mm", settings.panel_shift_mm, why, most=most_mm)
-    measuring = cell.force_sensors[recipe.device(FORCE)].settings.get("range")
-    if isinstance(measuring, list) and len(measuring) == 6:
+    measuring = measuring_range(cell.force_sensors[recipe.device(FORCE)])
+    if measuring:
         least_n = NOISE_SHARE * min(measuring[:3])
         why = (
             "1/10000 of the sensor's range is its own noise, and by less a dead sensor would be "

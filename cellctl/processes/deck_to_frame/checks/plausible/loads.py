@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.plausible.loads import G_M_S2
+from cellctl.config.driver_settings import measuring_range
 from cellctl.config.issue import ConfigIssue
 from cellctl.force.gravity.acceptance import PayloadLimits
 from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
@@ -79,10 +80,9 @@ def load_remarks(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
             "a weighing that is accepted may be off: another load would pass for this one"
         )
         yield ConfigIssue(f"robots.{robot}.load.tolerance_kg", f"{load.tolerance_kg:g}", said)
-    measuring = cell.force_sensors[force].settings.get("range")
+    measuring = measuring_range(cell.force_sensors[force])
     weight_n = (load.mass_kg - load.not_weighed_kg) * G_M_S2
-    # By convention a driver whose sensor has a measuring range names it so, forces first.
-    if isinstance(measuring, list) and len(measuring) == 6:
+    if measuring:
         least_n = min(measuring[:3])
         if least_n > _MOST_RANGE * weight_n:
             said = (
