@@ -43,7 +43,10 @@ def free_way(
         rough = _tree(around, start_rad, end_rad, seed * tries + number + 1, search_s / tries)
         if rough is not None:
             rng = np.random.default_rng([seed, number])
-            found.append(_rounded(around, _plain(around, _shortened(around, rough, rng))))
+            way = _rounded(around, _plain(around, _shortened(around, rough, rng)))
+            # The tree looks at places: a line of it that nothing has replaced was not swept yet.
+            if is_free_way(around, way):
+                found.append(way)
     if not found:
         raise NoFreeWay(
             f"none within {search_s:g} s; the nearest at its start: {around.narrowest(start_rad)}; "
