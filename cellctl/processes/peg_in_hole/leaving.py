@@ -34,7 +34,7 @@ async def leave_hole(cell: PegCell) -> None:
             press_n = await pressed_n(guard, 1.0, held.forces.insertion_n)
         # A run that was stopped has left it armed, and an armed guard takes no other load.
         await guard.disarm()
-        await guard.set_gravity_compensation(weight_of(held or recipes[0]))
+        await _subtract_weight(cell, held)
     # After a restart nobody remembers which recipe has run, so each is asked whether the tip is in
     # its hole.
     for recipe in recipes:
@@ -50,12 +50,18 @@ async def show_force_on_tip(cell: PegCell) -> None:
     Raises the faults of guard and robot.
     """
     held = recipe_in_hole(cell)
-    recipes = peg_recipes(cell.cell.config)
-    if recipes:
-        await cell.arm.guard.set_gravity_compensation(weight_of(held or recipes[0]))
+    await _subtract_weight(cell, held)
     if held is not None:
         flange_T_tip = pose_from_xyzabc(held.flange_T_tip)
         await cell.arm.guard.set_wrench_frame(cell.arm.flange_T_sensor.inv() * flange_T_tip)
+
+
+async def _subtract_weight(cell: PegCell, held: PegRecipe | None) -> None:
+    """Have the guard subtract what the recipe hangs on its sensor; away from every hole the first
+    recipe's, and nothing in a cell without one."""
+    recipes = peg_recipes(cell.cell.config)
+    if recipes:
+        await cell.arm.guard.set_gravity_compensation(weight_of(held or recipes[0]))
 
 
 def recipe_in_hole(cell: PegCell) -> PegRecipe | None:

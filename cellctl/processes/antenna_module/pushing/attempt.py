@@ -18,6 +18,10 @@ from cellctl.interfaces import Robot
 from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, PhaseLimits
+from cellctl.processes.antenna_module.insertion.verdict import (
+    InsertionJudgement,
+    judge_insertion,
+)
 from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, InsertionWatch
 from cellctl.processes.antenna_module.pushing.way import InsertionWay
 
@@ -98,6 +102,12 @@ class PushAttempt:
             self.fed_s = sample.t_s
             self.watch.feed(sample)
         return self.watch.trip
+
+    async def judged(self) -> InsertionJudgement:
+        """The verdict of what was recorded so far."""
+        # In a thread: a minute of samples takes a quarter of a second, and the robot has to hear
+        # from the loop all the time.
+        return await asyncio.to_thread(judge_insertion, self.curve(), self.socket, self.limits)
 
     def curve(self) -> InsertionCurve:
         """What was recorded so far, as far as the depth is known."""

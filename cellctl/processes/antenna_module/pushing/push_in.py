@@ -1,6 +1,5 @@
 """From the stand-off to the seat (docs/plugging.md, "Judging an insertion")."""
 
-import asyncio
 from collections import deque
 
 from cellctl.cell.guarded_motion.guarded_moves import Motion
@@ -15,7 +14,6 @@ from cellctl.processes.antenna_module.faults.plugging import (
     PlugSideForce,
 )
 from cellctl.processes.antenna_module.insertion.limits import InsertionPhase
-from cellctl.processes.antenna_module.insertion.verdict import judge_insertion
 from cellctl.processes.antenna_module.insertion.watch import InsertionTrip, TripCause
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 
@@ -127,14 +125,10 @@ _BY_CAUSE: dict[TripCause, type[PluggingError]] = {
 
 async def _met(attempt: PushAttempt, cause: TripCause, words: str) -> PluggingError:
     """The fault that the curve so far names; it may point at a contact, which a trip cannot."""
-    curve = attempt.curve()
     # At the entry the curve can name a single bent contact; a fault that only says that there is no
     # seat yet is none.
-    if cause is TripCause.AXIAL_EARLY and len(curve.t_s) >= _FEWEST_SAMPLES:
-        # In a thread: it takes long, and the robot has to hear from the loop all the time.
-        judged = (
-            await asyncio.to_thread(judge_insertion, curve, attempt.socket, attempt.limits)
-        ).fault
+    if cause is TripCause.AXIAL_EARLY and len(attempt.curve().t_s) >= _FEWEST_SAMPLES:
+        judged = (await attempt.judged()).fault
         if judged is not None and not isinstance(judged, PlugShortSeat):
             return type(judged)(f"{words}; {judged.detail}")
     return _BY_CAUSE[cause](words)

@@ -1,7 +1,5 @@
 """Step 80: into the socket under force limits that follow depth."""
 
-import asyncio
-
 from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors import CellError
@@ -9,7 +7,6 @@ from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.chain.requirements import require_fresh
 from cellctl.processes.antenna_module.insertion.verdict import (
     InsertionJudgement,
-    judge_insertion,
 )
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 from cellctl.processes.antenna_module.pushing.back_out import back_out
@@ -66,10 +63,7 @@ async def _pushed(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
 
 async def _judged(run: PluggingRun, attempt: PushAttempt) -> InsertionJudgement:
     """The verdict of the whole curve; raises its fault."""
-    # In a thread, as the text of the curve: a minute of samples takes a quarter of a second, too.
-    judgement = await asyncio.to_thread(
-        judge_insertion, attempt.curve(), attempt.socket, attempt.limits
-    )
+    judgement = await attempt.judged()
     await record_judgement(run, judgement, attempt.limits)
     if judgement.fault is not None:
         raise judgement.fault

@@ -2,23 +2,13 @@
 
 import re
 from pathlib import Path
-from shutil import copytree
 
 import pytest
 
 from cellctl.config.load import problems
 
-CONFIG = Path(__file__).parents[4] / "config"
 PINS, HOLES = "micro-d-15-pins.toml", "micro-d-15-holes.toml"
 _POSITION = re.compile(r"position_mm = \[(-?[\d.]+), (-?[\d.]+)\]")
-
-
-@pytest.fixture
-def cell(tmp_path: Path) -> Path:
-    copytree(CONFIG / "connectors", tmp_path / "connectors")
-    made = tmp_path / "antenna.toml"
-    made.write_text((CONFIG / "antenna.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    return made
 
 
 def draw_otherwise(path: Path, x: float, y: float) -> None:

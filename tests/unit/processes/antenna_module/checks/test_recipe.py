@@ -1,21 +1,8 @@
 """What `cellctl check` finds wrong with a reference in the shipped cell file."""
 
 from pathlib import Path
-from shutil import copytree
-
-import pytest
 
 from cellctl.config.load import problems
-
-CONFIG = Path(__file__).parents[5] / "config"
-
-
-@pytest.fixture
-def cell(tmp_path: Path) -> Path:
-    copytree(CONFIG / "connectors", tmp_path / "connectors")
-    made = tmp_path / "antenna.toml"
-    made.write_text((CONFIG / "antenna.toml").read_text(encoding="utf-8"), encoding="utf-8")
-    return made
 
 
 def change(cell: Path, old: str, new: str) -> None:

@@ -35,6 +35,7 @@ from tests.unit.processes.antenna_module.steps.bench import Bench
 
 # By their names: the package offers the functions under the names of the modules.
 step = importlib.import_module("cellctl.processes.antenna_module.steps.insert")
+attempts = importlib.import_module("cellctl.processes.antenna_module.pushing.attempt")
 
 
 def early_seat(depth_mm: float) -> tuple[float, ...]:
@@ -163,13 +164,13 @@ async def test_the_loop_runs_on_while_the_curve_is_judged(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     threads: list[int] = []
-    judge = step.judge_insertion
+    judge = attempts.judge_insertion
 
     def judged(*given: Any) -> Any:
         threads.append(threading.get_ident())
         return judge(*given)
 
-    monkeypatch.setattr(step, "judge_insertion", judged)
+    monkeypatch.setattr(attempts, "judge_insertion", judged)
     await step.insert(Over(bench, monkeypatch).state())
     assert threads
     assert threading.get_ident() not in threads
