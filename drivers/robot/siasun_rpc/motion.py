@@ -4,11 +4,12 @@ import asyncio
 from typing import cast
 
 from cellctl.errors.base import CellError
-from cellctl.errors.link import ReplyTimeout
+from cellctl.errors.link import LinkError, ReplyTimeout
 from cellctl.errors.robot import NotRearmed
 from drivers.robot.siasun_rpc import faults
-from drivers.robot.siasun_rpc.codec.messages import Request
+from drivers.robot.siasun_rpc.codec.messages import Request, Value
 from drivers.robot.siasun_rpc.config import SiasunRpcConfig
+from drivers.robot.siasun_rpc.connection import RpcConnection
 from drivers.robot.siasun_rpc.connections.link import RpcLink
 from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.readiness import check_ready
@@ -52,7 +53,7 @@ class Motion:
         self.raise_end()
         # From here on nobody knows whether the arm moves, until the controller has said so.
         self.over = False
-        (task,) = await self._link.motion.exchange(call, timeout_s=self._config.reply_timeout_s)
+        (task,) = await self._exchange(self._link.motion, call)
         self.task = cast(int, task)
         if self.task < 0:
             self.over = True
@@ -70,10 +71,10 @@ class Motion:
         stop_word, rearm_word = self._config.stop_word, self._config.rearm_word
         if stop_word is None or rearm_word is None:
             return
-        stops, acknowledged = await self._link.control.exchange(
+        stops, acknowledged = await self._exchange(
+            self._link.control,
             request("read_word_reg", stop_word),
             request("read_word_reg", rearm_word),
-            timeout_s=self._config.reply_timeout_s,
         )
         if stops != acknowledged:
             raise NotRearmed(f"{self._robot}: the guard has stopped the arm")
@@ -110,8 +111,15 @@ class Motion:
         raise faults.ended(self._robot, state, await self._link.vendor_errors())
 
     async def _ask(self, question: Request) -> int:
-        (state,) = await self._link.motion.exchange(
-            question, timeout_s=self._config.reply_timeout_s
-        )
+        (state,) = await self._exchange(self._link.motion, question)
         self.raise_end()
         return await self.unless_bad_end(cast(int, state))
+
+    async def _exchange(self, connection: RpcConnection, *requests: Request) -> list[Value]:
+        """Send calls and wait for all replies; raises what has ended the motion rather than that
+        this connection, which falls with all others, was closed."""
+        try:
+            return await connection.exchange(*requests, timeout_s=self._config.reply_timeout_s)
+        except LinkError:
+            self.raise_end()
+            raise

@@ -166,14 +166,16 @@ class ServoStream(PoseStream):
         """Calls on the motion connection; ``StreamSilent`` when they are not answered."""
         replies = asyncio.gather(*self._link.motion.send(*requests))
         await asyncio.wait({replies}, timeout=self.limits.loss_s)
-        # A stop or a loss of setpoints that has come meanwhile is the better explanation.
-        if not replies.done():
+        silent = not replies.done()
+        if silent:
             replies.cancel()
-            self._motion.raise_end()
-            raise StreamSilent(f"{self._robot}: no answer within {self.limits.loss_s:g} s")
-        values = replies.result()
+        else:
+            replies.exception()  # seen, even where the next line has a better explanation
+        # A stop or a loss that has come meanwhile: this connection falls with the others.
         self._motion.raise_end()
-        return values
+        if silent:
+            raise StreamSilent(f"{self._robot}: no answer within {self.limits.loss_s:g} s")
+        return replies.result()
 
     def _towards(self, target: RigidTransform) -> RigidTransform:
         """From where the arm was last sent with effect towards a setpoint, by at most one step:

@@ -95,10 +95,13 @@ async def test_a_half_open_line(direction: str) -> None:
         assert rig.logic.motions == 1
 
 
-async def test_a_state_stream_that_stops_takes_the_link_with_it() -> None:
+@pytest.mark.parametrize("reply_delay_s", [0.0, 0.1])
+async def test_a_state_stream_that_stops_takes_the_link_with_it(reply_delay_s: float) -> None:
     async with duco_rig() as rig:
         await rig.robot.connect()
         moving = await begun(rig)
+        # With slow replies the motion waits for one when its connection falls with the stream.
+        rig.rpc.back.delay_s = reply_delay_s
         rig.logic.faults.inject("frames_stop")
         with pytest.raises(LinkError, match="state frame"):
             async with asyncio.timeout(2.0):
