@@ -1,4 +1,4 @@
-"""Watches what the robots report of their panels while nothing moves: a move finds out itself."""
+"""Watches panels and latches of the robots while nothing moves: a move finds out itself."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -6,7 +6,7 @@ from dataclasses import replace
 from cellctl.cell.devices import LINK_AGE_S, Cell
 from cellctl.cell.readiness import why_not_ready
 from cellctl.errors import CellError
-from cellctl.errors.robot import ControllerFault, RobotNotReady
+from cellctl.errors.robot import ControllerFault, NotRearmed, RobotNotReady
 from cellctl.interfaces import RobotState
 from cellctl.packml.mode import Mode
 from cellctl.packml.state import State
@@ -43,8 +43,11 @@ class PanelWatch:
             self._found = {}
             return
         told, self._found = self._found, self._look()
-        for fault in told.values():
-            await self._unit.machine.fail(fault)
+        for name, fault in told.items():
+            # Robot and guard tell of a touch one after the other: what is latched by nobody for one
+            # look is none.
+            if name in self._found or not isinstance(fault, NotRearmed):
+                await self._unit.machine.fail(fault)
 
     def _look(self) -> Mapping[str, CellError]:
         faults = {}
@@ -65,7 +68,17 @@ class PanelWatch:
         by_itself = machine.state in _MOVES_NEXT and machine.mode is Mode.PRODUCTION
         # A latch belongs to whoever asked for it: every touch that the guard finds sets one.
         reasons = why_not_ready(replace(state, stop_latched=False))
-        if not (state.emergency_stop or (by_itself and reasons)):
-            return None
-        kind = ControllerFault if state.error_code else RobotNotReady
-        return kind(f"{name}, while it stood: {', '.join(reasons)}")
+        if state.emergency_stop or (by_itself and reasons):
+            kind = ControllerFault if state.error_code else RobotNotReady
+            return kind(f"{name}, while it stood: {', '.join(reasons)}")
+        if state.unasked_latch and not self._stopped_by_guard(name):
+            return NotRearmed(f"{name}, while it stood: {state.unasked_latch}")
+        return None
+
+    def _stopped_by_guard(self, robot: str) -> bool:
+        sensors = self._cell.config.force_sensors
+        return any(
+            guard.trip is not None
+            for name, guard in self._cell.guards.items()
+            if sensors[name].mounted_on == robot
+        )

@@ -46,6 +46,10 @@ class RobotState:
     speed_override_ratio: float
     error_words: str = ""
     """The number with the vendor's text and what to do, as far as they are known; empty for 0."""
+    unasked_latch: str = ""
+    """Why a stop is latched for which nobody has asked this driver: a dead man, a link that was
+    lost for a moment, a guard. Empty without such a latch, and while a motion runs, which tells its
+    own end."""
 
     @property
     def ready(self) -> bool:

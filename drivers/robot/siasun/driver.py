@@ -30,6 +30,7 @@ from cellctl.interfaces.streaming_robot import (
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.channels.command_channel import CommandChannel
+from drivers.robot.siasun.channels.latched import latched
 from drivers.robot.siasun.channels.running_command import RunningCommand
 from drivers.robot.siasun.channels.state_channel import StateChannel
 from drivers.robot.siasun.channels.stream import SiasunStream
@@ -117,9 +118,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
 
     def state(self, max_age_s: float = 0.25) -> RobotState:
         """The newest report. ``stop_latched`` includes this driver's own latch."""
-        state = self._state.newest(max_age_s)
-        # Whoever asks for readiness must see that this driver would refuse a move.
-        return replace(state, stop_latched=True) if self._latch else state
+        state, why = self._state.newest(max_age_s), self._state.missed_beats()
+        return latched(state, self._latch, why, running=self._command.running)
 
     def link_facts(self) -> dict[str, str]:
         """From the hello of both channels."""

@@ -3,7 +3,6 @@
 import asyncio
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,6 +29,7 @@ from cellctl.interfaces.streaming_robot import (
     StreamOffer,
 )
 from drivers.robot.siasun.bounds import Bounds
+from drivers.robot.siasun.channels.latched import latched
 from drivers.robot.siasun.codec.records import StreamFigures, StreamOption
 from drivers.robot.siasun.described_arm import DescribedArm
 from drivers.robot.siasun.followed_stream import followed
@@ -99,7 +99,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         """The newest report. ``stop_latched`` includes this driver's own latch."""
         self._check_link()
         state = self._link.watch.state(max_age_s)
-        return replace(state, stop_latched=True) if self._latch else state
+        return latched(state, self._latch, "", running=self._motion is not None)
 
     def link_facts(self) -> dict[str, str]:
         """Version, and the frames that every pose is asked for with."""

@@ -10,6 +10,7 @@ from cellctl.daemon.panel_watch import PanelWatch
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors.link import StaleData
+from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode
 from cellctl.packml.command import Command
 from cellctl.packml.mode import Mode
@@ -99,6 +100,60 @@ async def test_what_belongs_to_a_move_is_left_to_it(rig: DaemonRig, looks: dict[
     await in_contact(rig)
     panels = watch(rig)
     rig.bench.cell.main.looks = looks
+    await panels.look()
+    await panels.look()
+    assert rig.unit.machine.state is State.EXECUTE
+    rig.bench.cell.main.looks = {}
+    rig.contact.may_end.set()
+    await rig.to(State.COMPLETED)
+
+
+LATCHED = {"stop_latched": True, "unasked_latch": "no heartbeat for 0.6 s"}
+
+
+async def test_a_latch_that_nobody_has_asked_for_aborts_the_run_at_once(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    line = cast(PlcInterface, Port())
+    vitals = DaemonVitals(lambda: None)
+    daemon = asyncio.create_task(
+        supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive, vitals=vitals)
+    )
+    rig.bench.cell.main.looks = LATCHED
+    # No longer than an emergency stop takes.
+    await asyncio.wait_for(rig.to(State.ABORTED), 0.5)
+    daemon.cancel()
+    assert (await rig.record()).head.fault_number == 306
+    (alarm,) = await rig.archive.do(RunStore.active_alarms)
+    assert "main, while it stood: no heartbeat for 0.6 s" in alarm.text
+
+
+async def test_it_is_told_of_a_held_run_and_in_maintenance_too(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await rig.started(options=Options.SINGLE_STEP)
+    await rig.to(State.HELD)
+    monkeypatch.setattr(type(rig.unit.machine), "mode", Mode.MAINTENANCE)
+    panels = watch(rig)
+    rig.bench.cell.aux_1.looks = LATCHED
+    await panels.look()
+    await panels.look()
+    await rig.to(State.ABORTED)
+
+
+async def test_a_latch_of_one_look_is_a_touch_that_the_guard_has_not_told_yet(
+    rig: DaemonRig,
+) -> None:
+    await in_contact(rig)
+    panels = watch(rig)
+    rig.bench.cell.main.looks = LATCHED
+    await panels.look()
+    rig.bench.cell.main.looks = {}
+    await panels.look()
+    await panels.look()
+    assert rig.unit.machine.state is State.EXECUTE
+    # Nor is one for which the guard has a reason.
+    rig.bench.cell.main.looks = LATCHED
+    rig.bench.cell.guard.trip = GuardTrip(TripReason.TOUCH, 1.0, "Fz 12.0 N", 2, 12.0)
     await panels.look()
     await panels.look()
     assert rig.unit.machine.state is State.EXECUTE

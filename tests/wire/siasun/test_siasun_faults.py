@@ -1,6 +1,7 @@
 """The SIASUN driver against the fake controller: faults of the wire and of the controller."""
 
 import asyncio
+import re
 
 import numpy as np
 import pytest
@@ -220,7 +221,24 @@ async def test_a_latch_by_the_dead_man_tells_that_this_pc_has_paused() -> None:
         await rig.robot._state.wait(lambda status: status.latched, 2.0)
         await asyncio.sleep(0.1)
         rig.robot._state._beat()
+        # Before any motion asks: whoever watches an arm that stands tells it.
+        assert re.search(words, f"stop latch is set; {rig.robot.state().unasked_latch}")
         with pytest.raises(NotRearmed, match=words):
             await move(rig, 1.0, 0.05)
         await rearm(rig)
+        assert not rig.robot.state().unasked_latch
         await within(5.0, move(rig, 1.0, 0.05))
+
+
+async def test_a_stop_that_was_asked_for_is_no_latch_of_nobody(rig: AnyRig) -> None:
+    await rig.robot.stop()
+    state = rig.robot.state()
+    assert state.stop_latched
+    assert not state.unasked_latch
+
+
+async def test_a_link_that_is_lost_for_a_moment_leaves_a_latch_that_says_so(rig: AnyRig) -> None:
+    rig.wires["CMD"].reset()
+    await rig.robot._state.wait(lambda status: status.latched, 2.0)
+    await within(2.0, rig.robot._command.channel.wait_connected())
+    assert "CMD" in rig.robot.state().unasked_latch

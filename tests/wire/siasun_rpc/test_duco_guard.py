@@ -50,6 +50,20 @@ async def test_the_daemon_sees_the_guards_stop_and_waits_for_rearm() -> None:
         assert rig.logic.words[1] == rig.logic.words[2] == 1
 
 
+async def test_a_stop_of_the_guard_while_the_arm_stands_shows_before_the_next_motion() -> None:
+    async with cell() as (rig, guard):
+        assert not rig.robot.state().unasked_latch
+        guard.request_stop()
+        await beats(guard, lambda state: state is not None and state.stop_latched)
+        await rig.robot._link.watch.wait(lambda report: report.guard_stopped, 2.0)
+        assert rig.robot.state().unasked_latch
+        # Once the driver was asked to stop as well, as after a touch, it is nobody's any more.
+        await rig.robot.stop()
+        assert not rig.robot.state().unasked_latch
+        await rearm(rig)
+        assert not rig.robot.state().stop_latched
+
+
 async def test_the_guard_sees_the_daemons_rearm() -> None:
     async with cell() as (rig, guard):
         guard.request_stop()
