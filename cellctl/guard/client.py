@@ -70,7 +70,7 @@ class GuardClient:
         self._serial = ""
         self._degraded: tuple[str, ...] = ()
         self._gravity_compensation: Message | None = None
-        self.tared = False  # since the guard was started, and load and frame were set
+        self.hidden_axial_n: float | None = None  # by the zero; None: nobody has taken one
         self._wrench_frame: Message | None = None
         """The wrench frame that was set last; None for the sensor's own."""
 
@@ -84,8 +84,8 @@ class GuardClient:
         if self.running:
             return
         await self.stop()
-        self._stopping = self._ready = self.tared = False
-        self._fault = None
+        self._stopping = self._ready = False
+        self._fault = self.hidden_axial_n = None
         self._started = asyncio.get_running_loop().create_future()
         slots, reply_s = self._settings.ring_slots, self._settings.reply_timeout_s
         self._child = GuardChild(slots, reply_s, self._take_event, self._died, module=self._module)
@@ -138,7 +138,7 @@ class GuardClient:
         """Subtract what hangs on the sensor from now on; drops the tare."""
         load = gravity_compensation_to_json(compensation)
         await self._request("gravity_compensation", **load)
-        self._gravity_compensation, self.tared = load, False
+        self._gravity_compensation, self.hidden_axial_n = load, None
 
     @property
     def gravity_compensated(self) -> bool:
@@ -155,17 +155,17 @@ class GuardClient:
         own = RigidTransform.identity()
         frame = wrench_frame_to_json(own if sensor_T_wrench is None else sensor_T_wrench)
         await self._request("wrench_frame", **frame)
-        self._wrench_frame, self.tared = (None if sensor_T_wrench is None else frame), False
+        self._wrench_frame, self.hidden_axial_n = None if sensor_T_wrench is None else frame, None
 
     @property
     def in_part_frame(self) -> bool:
         """False in the sensor's own axes: the signs of a wrench say nothing of a part then."""
         return self._wrench_frame is not None
 
-    async def tare(self, duration_s: float) -> TareResult:
-        """Average the wrench over the next ``duration_s`` and subtract that from then on."""
+    async def tare(self, duration_s: float, *, hides_axial_n: float = 0.0) -> TareResult:
+        """Subtract the mean of the next ``duration_s`` from then on; it may hide a contact."""
         result = await self._request("tare", duration_s, duration_s=duration_s)
-        self.tared = True
+        self.hidden_axial_n = hides_axial_n
         mean, sigma = np.array(result["mean"]), np.array(result["sigma"])
         return TareResult(mean, sigma, int(result["samples"]))
 

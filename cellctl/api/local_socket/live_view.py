@@ -150,6 +150,8 @@ class LiveView:
         wrench: list[float] = (
             sample.wrench.tolist() if sample is not None and weighed else [math.nan] * 6
         )
+        # A zero that a Reset has taken in contact hides what it was pressed with.
+        felt = [*wrench[:2], wrench[2] + (guard.hidden_axial_n or 0.0)]
         # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
         shown = wrench if guard.in_part_frame else [math.nan] * 6
         stopped = "" if guard.trip is None else str(guard.trip)
@@ -159,7 +161,7 @@ class LiveView:
             "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
             "compensated": weighed,
             "limit_n": number(status.force_limit_n),
-            "presses_n": _pressing_n(status.state, wrench, self._least_n(name)),
+            "presses_n": _pressing_n(status.state, felt, self._least_n(name)),
             "trip": "" if awaited else stopped,
             "touch": stopped if awaited else "",
             "wrench": _limited(_WRENCH, shown),
@@ -176,7 +178,7 @@ class LiveView:
         config = self._cell.config
         load = config.robots[config.force_sensors[name].mounted_on].load
         guard = self._cell.guards[name]
-        if load is None or (guard.in_part_frame and guard.tared):
+        if load is None or (guard.in_part_frame and guard.hidden_axial_n is not None):
             return PRESSES_N
         return max(PRESSES_N, _UNTARED_SHARE * load.mass_kg * GRAVITY_M_S2)
 
@@ -189,12 +191,12 @@ def _guard(guard: GuardClient) -> Object:
     }
 
 
-def _pressing_n(state: State, wrench: Sequence[float], least_n: float) -> float | None:
+def _pressing_n(state: State, force: Sequence[float], least_n: float) -> float | None:
     """What an arm that was stopped presses with, N; None where it moves or hardly presses.
 
     Only where nothing moves by itself, but a Reset may: there somebody has to know before.
     """
-    force_n = math.hypot(*wrench[:3])
+    force_n = math.hypot(*force)
     return force_n if state in _STOPPED and force_n >= least_n else None
 
 

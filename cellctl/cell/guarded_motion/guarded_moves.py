@@ -53,14 +53,20 @@ class WrenchTolerance:
 
 @asynccontextmanager
 async def guarded_moves(
-    cell: Cell, arm: GuardedRobot, flange_T_wrench: RigidTransform, tolerance: WrenchTolerance
+    cell: Cell,
+    arm: GuardedRobot,
+    flange_T_wrench: RigidTransform,
+    tolerance: WrenchTolerance,
+    *,
+    hides_axial_n: float = 0.0,
 ) -> AsyncIterator[GuardedMove]:
     """Tare at standstill and arm the guard; yields a function that runs one guarded move.
 
     The limits are on the *change* since then: wherever the arm stands, in contact or not, a move
     that is free changes nothing but inertia. ``flange_T_wrench`` is the frame in which the limits
     hold. A trip stops the robot and raises its fault, and the guard stays latched. A weight that
-    is not subtracted is part of the zero: a move that turns it is one that changes the force.
+    is not subtracted is part of the zero: a move that turns it is one that changes the force. What
+    is pressed with is part of it too, along z with ``hides_axial_n`` as far as that is known.
     Raises ``NotSettled``, ``GuardRefused`` and what the moves raise.
     """
     guard = arm.guard
@@ -75,7 +81,7 @@ async def guarded_moves(
     await leave_weight_to_tare(guard)
     await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
     await settle(guard)
-    await guard.tare(TARE_S)
+    await guard.tare(TARE_S, hides_axial_n=hides_axial_n)
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))
         # After a fault the guard stays armed or latched: whoever handles the fault decides when

@@ -5,11 +5,15 @@ from dataclasses import replace
 
 from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.clock import now_s
+from cellctl.errors.force import LiftOffHeld
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
 
 _READING_S = 0.1
 """Length of the stretch of samples that is averaged: 100 at 1 kHz."""
+_LEAST_PULL_N = 5.0
+"""Less than this is no pull that could be watched: the noise of a reading, and what a hose makes of
+the first millimetre."""
 
 
 def able_to_leave(robot: Robot, guard: GuardPort) -> bool:
@@ -23,16 +27,29 @@ def able_to_leave(robot: Robot, guard: GuardPort) -> bool:
 
 async def pressed_n(guard: GuardClient, inwards: float, most_n: float) -> float:
     """Force with which a part is pressed into its place, as far as the guard tells; at most
-    ``most_n``.
+    ``most_n``, and negative where the part is pulled.
 
     To be asked before a tare, which hides it: a part that is drawn out changes the force by this
-    before it is pulled at all. ``inwards`` is 1 where z of the guard's frame points into the place
-    and -1 where it points out. Without a frame of the part, or a zero that was taken in it, nobody
-    knows: ``most_n``. So it is once daemon or guard have been started anew.
+    before it is pulled at all. What an earlier tare has hidden counts. ``inwards`` is 1 where z of
+    the guard's frame points into the place and -1 where it points out. Without a frame of the part,
+    or a zero that was taken in it, nobody knows: ``most_n``. So it is once daemon or guard have
+    been started anew.
     """
-    if not (guard.in_part_frame and guard.tared):
+    hidden_n = guard.hidden_axial_n
+    if not guard.in_part_frame or hidden_n is None:
         return most_n
     begin_s = now_s()
     await asyncio.sleep(_READING_S)
-    along_n = float(guard.samples(begin_s).wrench[:, 2].mean())
-    return min(most_n, max(0.0, -inwards * along_n))
+    along_n = hidden_n + float(guard.samples(begin_s).wrench[:, 2].mean())
+    return min(most_n, -inwards * along_n)
+
+
+def change_while_drawn_n(pull_n: float, press_n: float) -> float:
+    """Greatest change of force until a part that is pressed is pulled with ``pull_n``.
+
+    A part that is pulled already has the less left. Raises ``LiftOffHeld`` where that is nothing:
+    otherwise each new attempt, from a zero of its own, would pull by as much more than the last.
+    """
+    if pull_n + press_n < _LEAST_PULL_N:
+        raise LiftOffHeld(f"it is pulled with {-press_n:.0f} N already, allowed {pull_n:.0f} N")
+    return pull_n + press_n

@@ -5,7 +5,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
-from cellctl.cell.guarded_motion.leaving import pressed_n
+from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import HOME
@@ -16,12 +16,15 @@ CLEAR_OF_FACE_M = 15e-3
 _BESIDE_M = 50e-3
 """Farther than this from the axis of a hole nothing stands in the way. Nothing is touched there
 either, unless the circle of the touches is wider."""
+_INWARDS = 1.0
+"""In the frame of a run, z of the tip points into the hole."""
 _TWIST_N_M = 2.0
 _SLOW_M_S, _SLOW_M_S2 = 5e-3, 0.05
 
 
 async def leave_hole(cell: PegCell) -> None:
-    """Along the axis of the hole until the peg is clear of it, then home; raises the guard's trip.
+    """Along the axis of the hole until the peg is clear of it, then home; raises the guard's trip,
+    and ``LiftOffHeld`` for a part that an earlier attempt has left pulled.
 
     There is no gripper in the process: the part comes along, as it is held.
     """
@@ -30,8 +33,9 @@ async def leave_hole(cell: PegCell) -> None:
     if recipes:
         held = recipe_in_hole(cell)
         if held is not None:
-            # In the frame of a run, z of the tip points into the hole.
-            press_n = await pressed_n(guard, 1.0, held.forces.insertion_n)
+            press_n = await pressed_n(guard, _INWARDS, held.forces.insertion_n)
+            # Before the load is set, which drops the zero: what is pulled already must stay known.
+            change_while_drawn_n(held.forces.withdrawal_n, press_n)
         # A run that was stopped has left it armed, and an armed guard takes no other load.
         await guard.disarm()
         await _subtract_weight(cell, held)
@@ -96,8 +100,12 @@ async def _out_of(cell: PegCell, recipe: PegRecipe, press_n: float) -> None:
     wrench_frame = pose_from_xyzabc(recipe.flange_T_tip)
     # More, and the part is held, which is for a person to see. What it is pressed with goes first.
     pull_n = recipe.forces.withdrawal_n
-    pull = WrenchTolerance(pull_n, _TWIST_N_M, axial_n=pull_n + press_n)
-    async with guarded_moves(cell.cell, cell.arm, wrench_frame, pull) as move:
+    change_n = change_while_drawn_n(pull_n, press_n)
+    pull = WrenchTolerance(pull_n, _TWIST_N_M, axial_n=change_n)
+    hidden_n = -_INWARDS * press_n
+    async with guarded_moves(
+        cell.cell, cell.arm, wrench_frame, pull, hides_axial_n=hidden_n
+    ) as move:
         await move(
             cell.robot.move_linear(target, speed_m_s=_SLOW_M_S, acceleration_m_s2=_SLOW_M_S2)
         )

@@ -238,9 +238,9 @@ async def test_tare_and_deck_frame() -> None:
         await cell.client.set_wrench_frame(None)
         assert not cell.client.in_part_frame
         await cell.client.set_wrench_frame(turned)
-        assert not cell.client.tared
-        tare = await cell.client.tare(0.1)
-        assert cell.client.tared
+        assert cell.client.hidden_axial_n is None
+        tare = await cell.client.tare(0.1, hides_axial_n=-25.0)
+        assert cell.client.hidden_axial_n == -25.0
         # The scripted robot's flange looks down (C = 180°): gravity is +z of the sensor.
         assert tare.mean[2] == pytest.approx(-200.0, abs=0.5)
         assert tare.mean[4] == pytest.approx(-0.1 * 200.0, abs=0.5)

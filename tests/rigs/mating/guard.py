@@ -49,6 +49,7 @@ class WorldGuard:
         self._monitor = WrenchMonitor(self._flange_R_sensor, has_channel=True)
         self._monitor.channel_up = True
         self.gravity_compensated = False
+        self.hidden_axial_n: float | None = None
 
     # -- what the process does ------------------------------------------------------------------
     def tick(
@@ -125,12 +126,12 @@ class WorldGuard:
         self._monitor.contact.set_wrench_frame(_nine(frame), frame.translation.tolist())
         self._monitor.signal_jumped()
 
-    async def tare(self, duration_s: float) -> TareResult:
+    async def tare(self, duration_s: float, *, hides_axial_n: float = 0.0) -> TareResult:
         self._monitor.begin_tare(duration_s, asyncio.get_running_loop().time())
         async with asyncio.timeout(duration_s + 1.0):
             while self._monitor.tare_result is None:  # noqa: ASYNC110 - set by the simulation
                 await asyncio.sleep(POLL_S)
-        found = self._monitor.tare_result
+        found, self.hidden_axial_n = self._monitor.tare_result, hides_axial_n
         return TareResult(np.array(found.mean), np.array(found.sigma), found.samples)
 
     async def arm(self, limits: GuardLimits) -> None:

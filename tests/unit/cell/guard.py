@@ -26,7 +26,7 @@ class TinyGuard:
     trip: GuardTrip | None = None
     gravity_compensated: bool = True
     in_part_frame: bool = True
-    tared: bool = True
+    hidden_axial_n: float | None = 0.0
     sensor_T_wrench: RigidTransform | None = None
     """The part's frame that was given last; ``raw`` is not turned into it."""
     armed: bool = False
@@ -48,17 +48,17 @@ class TinyGuard:
 
     async def set_gravity_compensation(self, compensation: object) -> None:
         self._do("set_gravity_compensation")
-        self.gravity_compensated, self.tared = True, False
+        self.gravity_compensated, self.hidden_axial_n = True, None
 
     async def set_wrench_frame(self, sensor_T_wrench: object) -> None:
         self._do("set_wrench_frame")
-        self.in_part_frame, self.tared = sensor_T_wrench is not None, False
+        self.in_part_frame, self.hidden_axial_n = sensor_T_wrench is not None, None
         if isinstance(sensor_T_wrench, RigidTransform):
             self.sensor_T_wrench = sensor_T_wrench
 
-    async def tare(self, duration_s: float) -> TareResult:
+    async def tare(self, duration_s: float, *, hides_axial_n: float = 0.0) -> TareResult:
         self._do("tare")
-        self.tared = True
+        self.hidden_axial_n = hides_axial_n
         return TareResult(np.zeros(6), np.ones(6), 100)
 
     async def arm(self, limits: GuardLimits) -> None:

@@ -1,13 +1,14 @@
 """Out of the socket without a run: after a Stop, or after a restart that knows nothing of it."""
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
-from cellctl.cell.guarded_motion.leaving import pressed_n
+from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.geometry.pose import MM, pose_from_xyzabc
-from cellctl.processes.antenna_module.connector.connector import read_connector
-from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
+from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
+from cellctl.processes.antenna_module.insertion.limits import InsertionLimits, InsertionPhase
 from cellctl.processes.antenna_module.looking import nominal
 from cellctl.processes.antenna_module.mated import MATED_TURN
 from cellctl.processes.antenna_module.pushing.back_out import (
@@ -20,6 +21,8 @@ from cellctl.processes.antenna_module.pushing.back_out import (
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
 
+_INWARDS = -1.0
+"""In the frame of a run, z of the plug points out of the socket."""
 _BESIDE_M = 5e-3
 """Farther than this from the axis of a socket the plug is not in it: a place that is stated in a
 recipe is good to far less than a millimetre."""
@@ -39,10 +42,15 @@ async def draw_out(cell: AntennaCell, recipe: AntennaRecipe) -> None:
     # As the plug stands and not as the socket is stated: it was turned to its socket to go in.
     inwards = (here * flange_T_plug).rotation.apply([0.0, 0.0, 1.0])
     target = RigidTransform.from_translation(-way_m * inwards) * here
-    tolerance = await _tolerance(cell, recipe)
+    socket = read_connector(cell.cell.folder / recipe.socket)
+    press_n = await pressed_n(cell.arm.guard, _INWARDS, _most_pressed_n(recipe, socket, here))
     try:
         async with guarded_moves(
-            cell.cell, cell.arm, flange_T_plug * MATED_TURN, tolerance
+            cell.cell,
+            cell.arm,
+            flange_T_plug * MATED_TURN,
+            _tolerance(socket, press_n),
+            hides_axial_n=-_INWARDS * press_n,
         ) as move:
             await move(
                 cell.arm.robot.move_linear(
@@ -55,26 +63,45 @@ async def draw_out(cell: AntennaCell, recipe: AntennaRecipe) -> None:
 
 def way_out_m(recipe: AntennaRecipe, base_T_flange: RigidTransform) -> float:
     """From where the plug would be in its socket to the stand-off over it; 0 away from there."""
+    x_m, y_m, height_m = _place_m(recipe, base_T_flange)
+    if max(abs(x_m), abs(y_m)) > _BESIDE_M:
+        return 0.0
+    return max(0.0, recipe.insertion.stand_off_mm * MM + _uncertain_m(recipe) - height_m)
+
+
+def _place_m(recipe: AntennaRecipe, base_T_flange: RigidTransform) -> tuple[float, float, float]:
+    """The plug over the face of the socket, as both are stated."""
     base_T_face = nominal(recipe.base_T_socket)
     place = base_T_face.inv() * base_T_flange * pose_from_xyzabc(recipe.flange_T_plug)
     x_m, y_m, height_m = place.translation.tolist()
-    if max(abs(x_m), abs(y_m)) > _BESIDE_M:
-        return 0.0
-    insertion = recipe.insertion
-    uncertain_mm = insertion.height_sigmas * recipe.base_T_socket.height_sigma_mm
-    return max(0.0, (insertion.stand_off_mm + uncertain_mm) * MM - float(height_m))
+    return x_m, y_m, height_m
 
 
-async def _tolerance(cell: AntennaCell, recipe: AntennaRecipe) -> WrenchTolerance:
-    """As after a fault of the contact: what the plug is pressed with may go, then it is pulled."""
-    socket = read_connector(cell.cell.folder / recipe.socket)
+def _uncertain_m(recipe: AntennaRecipe) -> float:
+    sigma_mm = float(np.hypot(recipe.base_T_socket.height_sigma_mm, recipe.plug_height_sigma_mm))
+    return recipe.insertion.height_sigmas * sigma_mm * MM
+
+
+def _most_pressed_n(
+    recipe: AntennaRecipe, socket: Connector, base_T_flange: RigidTransform
+) -> float:
+    """With so much a run may have left the plug pressed where it stands."""
     limits = InsertionLimits.of(socket)
-    as_a_run_may_n = limits.at(limits.seat_depth_m).axial_n
-    # In the frame of a run, z of the plug points out of the socket.
-    press_n = await pressed_n(cell.arm.guard, -1.0, as_a_run_may_n)
+    _, _, height_m = _place_m(recipe, base_T_flange)
+    # The place is stated, and the contact springs may come earlier than drawn.
+    at_most_m = 2 * _uncertain_m(recipe) - height_m
+    if limits.phase_at(at_most_m) is InsertionPhase.SLIDING:
+        return limits.at(at_most_m).axial_n
+    # A few newtons have stopped a plug that has not come to its springs, and the stop took a while.
+    return limits.entry_most_n + limits.over_n
+
+
+def _tolerance(socket: Connector, press_n: float) -> WrenchTolerance:
+    """As after a fault of the contact: what the plug is pressed with may go, then it is pulled."""
+    limits = InsertionLimits.of(socket)
     lever_m = max(socket.outline_m) / 2.0
     return WrenchTolerance(
         force_n=SIDE_N + limits.sliding_side_n,
-        moment_n_m=MOMENT_N_M + press_n * lever_m,
-        axial_n=PULL_RATIO * limits.greatest_n + press_n,
+        moment_n_m=MOMENT_N_M + abs(press_n) * lever_m,
+        axial_n=change_while_drawn_n(PULL_RATIO * limits.greatest_n, press_n),
     )

@@ -315,7 +315,7 @@ async def test_what_a_compensation_leaves_of_a_load_is_no_contact(
     assert (await operator.status()).forces[0].presses_n is not None
     await guard.set_wrench_frame(None)
     assert (await operator.status()).forces[0].presses_n is None
-    guard.in_part_frame, guard.tared = True, False  # as a guard that was started anew
+    guard.in_part_frame, guard.hidden_axial_n = True, None  # as a guard that was started anew
     assert (await operator.status()).forces[0].presses_n is None
 
 

@@ -10,6 +10,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.config.load import load_cell
+from cellctl.errors.force import LiftOffHeld
+from cellctl.errors.robot import MotionRejected
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
@@ -90,7 +92,7 @@ async def test_the_press_that_a_stop_has_left_is_no_pull(
     in_frame: bool, tared: bool, pressed_n: float
 ) -> None:
     cell, _, guard = left_at(5.0)
-    guard.in_part_frame, guard.tared = in_frame, tared
+    guard.in_part_frame, guard.hidden_axial_n = in_frame, 0.0 if tared else None
     guard.raw = guard.raw * 0.05 - np.array([0.0, 0.0, 25.0, 0.0, 0.0, 0.0])
     await leave_hole(cell)
     (recipe,) = peg_recipes(CELL)
@@ -99,6 +101,32 @@ async def test_the_press_that_a_stop_has_left_is_no_pull(
     # As much as a run may press where nobody knows.
     assert z_n == pytest.approx(recipe.forces.withdrawal_n + pressed_n, abs=0.1)
     assert x_n == y_n == recipe.forces.withdrawal_n
+
+
+async def test_a_second_reset_counts_what_the_zero_of_the_first_has_hidden() -> None:
+    cell, robot, guard = left_at(5.0)
+    guard.in_part_frame = True
+    guard.raw = guard.raw * 0.05 - np.array([0.0, 0.0, 25.0, 0.0, 0.0, 0.0])
+    robot.faults["move"] = MotionRejected("stopped")
+    with pytest.raises(MotionRejected):
+        await leave_hole(cell)
+    # By the zero of the first one, 10 N of the press have gone.
+    guard.raw = guard.raw + np.array([0.0, 0.0, 35.0, 0.0, 0.0, 0.0])
+    del robot.faults["move"]
+    await leave_hole(cell)
+    (recipe,) = peg_recipes(CELL)
+    _, second, *_ = guard.limits
+    assert second.filtered[2] == pytest.approx(recipe.forces.withdrawal_n + 15.0, abs=0.1)
+
+
+async def test_a_peg_that_holds_a_full_pull_is_not_pulled_again() -> None:
+    cell, robot, guard = left_at(5.0)
+    guard.in_part_frame = True
+    guard.raw = guard.raw * 0.05 + np.array([0.0, 0.0, 21.0, 0.0, 0.0, 0.0])
+    for _ in range(2):
+        with pytest.raises(LiftOffHeld, match="pulled with 21 N already, allowed 20 N"):
+            await leave_hole(cell)
+    assert robot.moves == []
 
 
 async def test_the_force_on_a_tip_in_its_hole_is_told_in_its_axes_without_the_weight() -> None:

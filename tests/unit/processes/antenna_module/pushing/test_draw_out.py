@@ -1,7 +1,7 @@
 """Out of the socket at a Reset: slowly, with a pull that a plug may need, from any press."""
 
 from contextlib import nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
@@ -12,9 +12,10 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.load import load_cell
 from cellctl.errors.force import LiftOffHeld
+from cellctl.errors.robot import MotionRejected
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.limits import GuardLimits
-from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.guard.report import GuardSamples, GuardTrip, TareResult, TripReason
 from cellctl.processes.antenna_module.insertion.limits import InsertionLimits
 from cellctl.processes.antenna_module.looking import nominal
 from cellctl.processes.antenna_module.mated import MATED_TURN
@@ -46,11 +47,20 @@ def flange_at(depth_mm: float, x_mm: float = 0.0) -> RigidTransform:
 
 
 @dataclass
-class WithSamples(TinyGuard):
-    """The press of the seat along z, by the zero that the run has taken."""
+class WithZero(TinyGuard):
+    """A true force along z, told from the zero that was taken last; the run's hides nothing."""
 
-    def __post_init__(self) -> None:
-        self.raw = self.raw * 0.05 + np.array([0.0, 0.0, SEAT_PRESS_N, 0.0, 0.0, 0.0])
+    true_n: float = SEAT_PRESS_N
+    zero_n: float = 0.0
+
+    def samples(self, since_s: float) -> GuardSamples:
+        told_n = np.array([0.0, 0.0, self.true_n - self.zero_n, 0.0, 0.0, 0.0])
+        samples = super().samples(since_s)
+        return replace(samples, wrench=samples.wrench * 0.05 + told_n)
+
+    async def tare(self, duration_s: float, *, hides_axial_n: float = 0.0) -> TareResult:
+        self.zero_n = self.true_n
+        return await super().tare(duration_s, hides_axial_n=hides_axial_n)
 
 
 @dataclass
@@ -59,7 +69,7 @@ class Left:
 
     flange: RigidTransform
     restarted: bool = False
-    guard: WithSamples = field(default_factory=WithSamples)
+    guard: WithZero = field(default_factory=WithZero)
 
     def __post_init__(self) -> None:
         self.robot = StillRobot("arm", flange=self.flange, watched_by=self.guard)
@@ -78,8 +88,15 @@ class Left:
 
     @property
     def limits(self) -> GuardLimits:
-        (only,) = self.guard.limits
-        return only
+        return self.guard.limits[-1]
+
+    async def stopped_on_the_way(self, true_n: float) -> None:
+        """A Reset that somebody stops, with this force on the plug then."""
+        self.robot.faults["move"] = MotionRejected("stopped")
+        with pytest.raises(MotionRejected):
+            await self.drawn()
+        del self.robot.faults["move"]
+        self.guard.true_n = true_n
 
 
 async def test_the_plug_is_drawn_slowly_along_its_axis_to_the_stand_off() -> None:
@@ -103,6 +120,52 @@ async def test_the_pull_that_contacts_may_need_is_no_fault_from_any_press(restar
         assert axial_n == pytest.approx(MAY_NEED_N + SEAT_PRESS_N, abs=0.5)
     side_n = left.limits.filtered[0]
     assert side_n < 15.0
+
+
+@pytest.mark.parametrize("stops", [1, 2])
+@pytest.mark.parametrize("left_n", [SEAT_PRESS_N, 12.0, 0.0])
+async def test_what_presses_after_a_reset_that_was_stopped_is_no_pull(
+    left_n: float, stops: int
+) -> None:
+    left = Left(flange_at(2.5))
+    for _ in range(stops):
+        await left.stopped_on_the_way(left_n)
+    await left.drawn()
+    assert left.limits.filtered[2] == pytest.approx(MAY_NEED_N + left_n, abs=0.5)
+
+
+async def test_a_press_that_nobody_knew_is_known_no_better_after_a_reset_that_was_stopped() -> None:
+    left = Left(flange_at(2.5), restarted=True)
+    await left.stopped_on_the_way(SEAT_PRESS_N - 7.0)
+    await left.drawn()
+    unknown_n = LIMITS.at(LIMITS.seat_depth_m).axial_n
+    assert left.limits.filtered[2] == pytest.approx(MAY_NEED_N + unknown_n - 7.0, abs=0.5)
+
+
+async def test_a_plug_that_was_left_pulled_is_pulled_no_harder_by_the_next_reset() -> None:
+    left = Left(flange_at(2.5))
+    await left.stopped_on_the_way(-30.0)
+    await left.drawn()
+    assert left.limits.filtered[2] == pytest.approx(MAY_NEED_N - 30.0, abs=0.5)
+
+
+async def test_a_plug_that_holds_a_full_pull_is_not_pulled_again() -> None:
+    left = Left(flange_at(2.5))
+    await left.stopped_on_the_way(-MAY_NEED_N - 2.0)
+    armed = len(left.guard.limits)
+    with pytest.raises(LiftOffHeld, match=r"pulled with 7\d N already"):
+        await left.drawn()
+    assert len(left.guard.limits) == armed
+    assert left.robot.moves == []
+
+
+@pytest.mark.parametrize(("depth_mm", "pressed_n"), [(0.2, 13.0), (0.9, 51.7), (2.5, 51.7)])
+async def test_after_a_restart_a_plug_counts_as_pressed_by_what_its_depth_allows(
+    depth_mm: float, pressed_n: float
+) -> None:
+    left = Left(flange_at(depth_mm), restarted=True)
+    await left.drawn()
+    assert left.limits.filtered[2] == pytest.approx(MAY_NEED_N + pressed_n, abs=0.5)
 
 
 async def test_a_plug_that_is_held_is_told_as_one() -> None:
