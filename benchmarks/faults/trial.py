@@ -75,7 +75,9 @@ def run_trial(bench: Bench, fault: Fault, phase: Phase) -> Observation:
 
 def _expected(fault: Fault, phase: Phase) -> Expected:
     effect, bound_s = demanded(fault, phase)
-    has_record = phase.has_record and not (phase.starts and fault.line_silent)
+    # A daemon that is killed or held as Start comes may not have begun a run.
+    unheard = fault.line_silent or fault.silent_s > 0
+    has_record = phase.has_record and not (phase.starts and unheard)
     return Expected(
         effect,
         bound_s,
