@@ -18,7 +18,7 @@ from cellctl.api.local_socket.messages import (
 from cellctl.api.local_socket.report import StatusReport
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
-from cellctl.errors.local import CommandMissedItsGoal
+from cellctl.errors.local import CommandMissedItsGoal, DaemonNotReached, StopNotDelivered
 from cellctl.errors.records import StoreUnavailable
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
@@ -59,12 +59,12 @@ def unhold(socket: SocketOption = None) -> None:
 
 def stop(socket: SocketOption = None) -> None:
     """End motion and run; obeyed at any time, whoever is in control."""
-    _plain(socket, "stop", ("STOPPED",))
+    _end_motion(socket, "stop", ("STOPPED",))
 
 
 def abort(socket: SocketOption = None) -> None:
     """Stop and latch all robots at once; obeyed at any time, whoever is in control."""
-    _plain(socket, "abort", ("ABORTED",))
+    _end_motion(socket, "abort", ("ABORTED",))
 
 
 def start(
@@ -125,6 +125,15 @@ def _plain(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None
     client = DaemonClient(socket)
     client.command(PlainCommand(request=name))
     _tell(_arrived(client.settled(), goal))
+
+
+def _end_motion(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None:
+    """As ``_plain``. Somebody who wants to stop the arms and meets a daemon that does not answer
+    must not look for its socket first."""
+    try:
+        _plain(socket, name, goal)
+    except DaemonNotReached as error:
+        raise StopNotDelivered(error.detail) from error
 
 
 def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wait: bool) -> None:

@@ -31,7 +31,10 @@ def list_calibrations(*, as_json: AsJson = False, data_dir: DataDir = None) -> N
         _as_json(found)
         return
     if not found:
-        typer.echo("no calibrations")
+        typer.echo(
+            "no calibrations: none was made by a procedure of this run store. Those that the cell "
+            "uses lie in `calibration_dir` of its cell file; `cellctl status` lists them."
+        )
         return
     now = utc_now()
     table = Table("kind", "made (UTC)", "valid until", "verdict", "state", "id", box=None)

@@ -46,6 +46,7 @@ from cellctl.errors.local import (
     CommandRefused,
     DaemonNotReached,
     MessageMalformed,
+    StopNotDelivered,
 )
 from cellctl.records import RunStore
 from tests.unit.cli.agreeable import AT_REST, Agreeable, listening
@@ -230,6 +231,15 @@ def test_what_takes_too_long_is_not_waited_for(
 def test_no_daemon_is_a_numbered_fault(tmp_path: Path) -> None:
     done = cellctl("status", "--socket", str(tmp_path / "none"))
     assert fault_of(done) is DaemonNotReached
+
+
+@pytest.mark.parametrize("name", ["stop", "abort"])
+def test_a_stop_that_reaches_nobody_says_that_nothing_was_stopped(
+    tmp_path: Path, name: str
+) -> None:
+    done = cellctl(name, "--socket", str(tmp_path / "none"))
+    assert fault_of(done) is StopNotDelivered
+    assert str(tmp_path / "none") in str(done.exception)
 
 
 def test_status_for_programs(daemon: Agreeable) -> None:
