@@ -18,6 +18,11 @@ _PREFIX = 24
 _PAIRS = (("open_valve", "close_valve"), ("opened_sensor", "closed_sensor"))
 _CHANNELS = 8
 """Channels of one terminal of a coupler."""
+_START_M_S2 = 1500.0 / 200.0 / 0.4
+"""What the fake arm makes of a load as a joint move at full rated speed begins: 1.5 kN of 200 kg at
+40 % (docs/guard.md)."""
+_MUCH_LESS = 0.5
+"""A controller with softer ramps than the fake's is no mistake."""
 _COUPLERS = (plugins.GRIPPER, plugins.DIGITAL_IO)
 
 
@@ -25,12 +30,36 @@ def cell_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
     """Remarks on what belongs to no process; of fake cells, all of whose addresses are of this PC,
     none on these."""
     yield from _gripper_channels(cell)
+    yield from _starts_of_joint_moves(cell)
     if cell.simulated:
         return
     yield from _open_to_all(cell)
     yield from _relative(cell)
     yield from _other_networks(cell)
     yield from _shared_hosts(cell)
+
+
+def _starts_of_joint_moves(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """A limit of free moves that the load's own inertia may exceed as a joint move begins.
+
+    How fast an arm speeds up between taught joints is the controller's matter and stands in no
+    cell file, so that nothing here is refused.
+    """
+    for name, sensor in cell.force_sensors.items():
+        robot = cell.robots.get(sensor.mounted_on)
+        if robot is None or robot.load is None:
+            continue
+        weighed_kg = robot.load.mass_kg - robot.load.not_weighed_kg
+        start_m_s2 = _START_M_S2 * robot.speed_percent / 100
+        if sensor.free_force_n < _MUCH_LESS * weighed_kg * start_m_s2:
+            said = (
+                f"{weighed_kg:g} kg took {weighed_kg * start_m_s2:.0f} N on a fake arm that begins "
+                f"a joint move at speed_percent = {robot.speed_percent:g}: an arm that starts so "
+                "is stopped by the guard at every move; docs/guard.md says how to find the limit"
+            )
+            yield ConfigIssue(
+                f"force_sensors.{name}.free_force_n", f"{sensor.free_force_n:g}", said
+            )
 
 
 def _open_to_all(cell: CellConfig) -> Iterator[ConfigIssue]:

@@ -41,6 +41,15 @@ _WEIGHED = (
         "a far larger sensor: somebody may have had one",
     ),
     Undecided(
+        deck(
+            'mounted_on = "main"',
+            'mounted_on = "main"\nfree_force_n = 200.0',
+            "force_sensors.force.free_force_n",
+            "200 kg took 1500 N on a fake arm",
+        ),
+        "a low limit of free moves: the controller may start its joint moves gently",
+    ),
+    Undecided(
         drawn(
             ("deck.toml",),
             "position_sigma_mm = 0.004",
