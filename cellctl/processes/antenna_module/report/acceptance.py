@@ -2,7 +2,11 @@
 
 from cellctl.processes.antenna_module.record import keys
 from cellctl.records.entries import RunRecord
-from cellctl.records.report.acceptance.requirement import RequirementGroup, of_figure
+from cellctl.records.report.acceptance.requirement import (
+    RequirementGroup,
+    not_measured,
+    of_figure,
+)
 
 _GROUPS = (
     (
@@ -37,6 +41,8 @@ _GROUPS = (
         },
     ),
 )
+_ALWAYS = (keys.PLACED, keys.PLACED_TURN, keys.SEAT_DEPTH, keys.TOTAL)
+"""What every plugging finds that comes to its end."""
 WORDS = {
     keys.REGRIPS: "times that the module was put back and gripped again",
     keys.SECOND_LOOKS: "looks that were taken a second time",
@@ -47,10 +53,11 @@ WORDS = {
 
 
 def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
-    """Every requirement on a plugging, as far as its run has come."""
+    """Every requirement on a plugging; what its run has ended without is not measured."""
     groups = []
     for title, note, titles in _GROUPS:
         found = (of_figure(record, key, words) for key, words in titles.items())
-        rows = tuple(entry for entry in found if entry is not None)
-        groups.append(RequirementGroup(title, rows, note))
+        wanted = {key: titles[key] for key in _ALWAYS if key in titles}
+        rows = (entry for entry in found if entry is not None)
+        groups.append(RequirementGroup(title, (*rows, *not_measured(record, wanted)), note))
     return tuple(groups)

@@ -13,6 +13,7 @@ from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
     guarded,
+    not_measured,
     of_figure,
 )
 from cellctl.records.report.sections import Part
@@ -28,6 +29,14 @@ _MATING = {
     "peak_lateral": "greatest lateral force, single samples",
     "peak_moment": "greatest moment, single samples",
 }
+_SEATED = {
+    keys.PIN_OFFSETS: "lateral offset at the pin holes",
+    keys.GAP_BY_VISION: "gap deck to frame, by vision",
+    keys.SEAT_ROTATION: "rotation deck to frame",
+}
+"""What every verification finds."""
+_MATED = ("seat_gap", "hold_force", "released_force", keys.PEAK_FORCE)
+"""What every mating finds; the further figures are of the same curves."""
 _FITS = {
     "frame": "greatest residual of a hole, frame",
     "deck": "greatest residual of a hole, deck",
@@ -82,16 +91,19 @@ def parts(record: RunRecord) -> tuple[Part, ...]:
 
 
 def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
-    """Every requirement on an assembly, as far as its run has come."""
+    """Every requirement on an assembly; what its run has ended without is not measured."""
     return (
         RequirementGroup(
             "Seated deck",
-            tuple(_seated(record)),
+            (*_seated(record), *not_measured(record, _SEATED)),
             "deck against frame after release, by the stereo heads, in the axes of the frame",
         ),
         RequirementGroup(
             "Mating",
-            tuple(_found(record, _MATING)),
+            (
+                *_found(record, _MATING),
+                *not_measured(record, {key: _MATING[key] for key in _MATED}),
+            ),
             "in the axes of the deck, gravity removed; without U, because the certificate of the "
             "force sensor is not part of the record",
         ),
@@ -123,7 +135,7 @@ def _seated(record: RunRecord) -> Iterator[Requirement]:
         for hole in holes
     ]  # fmt: skip
     wanted += [
-        (keys.GAP_BY_VISION, "gap deck to frame, by vision",
+        (keys.GAP_BY_VISION, _SEATED[keys.GAP_BY_VISION],
          f"{keys.GAP_BY_VISION}_{keys.UNCERTAINTY}"),
     ]  # fmt: skip
     for key, title, uncertainty in wanted:

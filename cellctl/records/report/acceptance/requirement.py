@@ -1,8 +1,9 @@
 """A requirement on a part or on its making, beside what was found."""
 
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from cellctl.records.entries import RunRecord, Verdict
+from cellctl.records.entries import DRY_RUN, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
 
 
@@ -17,7 +18,7 @@ class Requirement:
     required: Limit
     """The limit, as the recipe or the drawing states it."""
     verdict: Verdict | None
-    """The verdict; None where nothing was measured yet."""
+    """The verdict; None where nothing need be measured. FAIL without a value: not measured."""
     expanded: float | None = None
     """Expanded uncertainty of the value (JCGM 100, 6.2) with ``COVERAGE_FACTOR``; None where none
     was evaluated, and the value is judged by its limit alone."""
@@ -72,3 +73,18 @@ def guarded(record: RunRecord, key: str, title: str, expanded: float | None) -> 
     lower = None if narrow.lower is None else narrow.lower - expanded
     upper = None if narrow.upper is None else narrow.upper + expanded
     return replace(plain, required=Limit(lower, upper), accepted=narrow)
+
+
+def not_measured(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:
+    """What a run that was to make a part has ended without, by the keys of its figures.
+
+    A report that left these lines out would show nothing but green ones of a run that was cut off
+    before its verification. A good run has measured all that its recipe asks for; one that is open
+    may measure it yet.
+    """
+    if record.head.mode == DRY_RUN or record.head.result in (None, RunResult.GOOD):
+        return
+    for key, title in titles.items():
+        nested = f"{key}."
+        if not any(one == key or one.startswith(nested) for one in record.newest_figures):
+            yield Requirement(title, None, "", NO_LIMIT, Verdict.FAIL, figure=key)

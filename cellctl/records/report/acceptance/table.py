@@ -89,6 +89,8 @@ def _verdict(entry: Requirement) -> tuple[str, RowMark]:
         return ("optional, not entered" if entry.value is None else "no limit known"), RowMark.NONE
     if entry.accepted == NO_LIMIT and is_undecided(entry.value, entry.required, entry.expanded):
         return f"? {NOT_DECIDED}: {_too_wide(entry)}", RowMark.NONE
+    if entry.value is None and entry.verdict is Verdict.FAIL:
+        return "✗ not measured", RowMark.BAD
     return _VERDICTS[entry.verdict]
 
 

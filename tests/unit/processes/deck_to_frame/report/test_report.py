@@ -34,7 +34,7 @@ from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.processes.deck_to_frame.report.tiles import tiles
-from cellctl.records import RunStore
+from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import (
     Document,
     Gauge,
@@ -43,7 +43,7 @@ from cellctl.records.entries import (
     RunRecord,
     Verdict,
 )
-from cellctl.records.figures import split_document
+from cellctl.records.figures import Limit, figure, split_document
 from cellctl.records.files.curve_file import encode_curve
 from cellctl.records.files.mcap_reading import MEDIA_TYPE
 from cellctl.records.parts import MATE_SERIAL, PARTS
@@ -157,6 +157,21 @@ def test_a_run_that_failed_at_once_has_nothing_of_an_assembly(
     text = text_of(export_run(store, start(store), tmp_path, pages=pages))
     for section in ("Holes", "Measure and compensate", "Mating under force", "Pin holes"):
         assert section not in text
+
+
+@pytest.mark.parametrize("ended", [RunResult.INTERRUPTED, RunResult.ABORTED, RunResult.BAD])
+def test_what_a_run_has_ended_without_is_not_measured(store: RunStore, ended: RunResult) -> None:
+    run = start(store)
+    assert not any(group.requirements for group in acceptance(store.run(run))), "it is open"
+    store.add(run, figure("peak_force", 38.4, "N", limit=Limit(upper=50.0)))
+    store.close_run(run, ended)
+    record = store.run(run)
+    table = acceptance_table(record, acceptance(record)).blocks[0]
+    assert isinstance(table, ReportTable)
+    verdicts = {row.cells[0].text: row.cells[5].text for row in table.rows if len(row.cells) > 1}
+    for title in ("lateral offset at the pin holes", "gap deck to frame, by vision"):
+        assert verdicts[title] == "✗ not measured"
+    assert verdicts["greatest force along the approach, single samples"] == "✓ conforms"
 
 
 def test_every_axis_limit_has_a_line_of_its_own(store: RunStore) -> None:
