@@ -24,8 +24,24 @@ def new_app(group: type[GroupedCommands] = GroupedCommands) -> typer.Typer:
     return app
 
 
+def _show_version(asked: bool) -> None:  # noqa: FBT001 - called by typer
+    if asked:
+        # Only here: git is asked for the revision of a checkout.
+        from cellctl.version import software
+
+        typer.echo(software())
+        raise typer.Exit
+
+
 def _root(
-    *, debug: Annotated[bool, typer.Option(help="Show the traceback of a fault.")] = False
+    *,
+    debug: Annotated[bool, typer.Option(help="Show the traceback of a fault.")] = False,
+    _version: Annotated[
+        bool,
+        typer.Option(
+            "--version", help="Version and revision.", is_eager=True, callback=_show_version
+        ),
+    ] = False,
 ) -> None:
     """Numbered faults end with exit code 1 and one clear line; `--debug` shows where."""
     settings["debug"] = debug

@@ -2,7 +2,7 @@
 
 import socket
 import time
-from collections.abc import Collection, Iterator
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 
 from cellctl.api.local_socket.messages import (
@@ -64,15 +64,21 @@ class DaemonClient:
             raise CommandRefused("; ".join(_refusal(answer)))
 
     def settled(
-        self, states: Collection[str] = (), timeout_s: float | None = SETTLE_S
+        self,
+        states: Collection[str] = (),
+        timeout_s: float | None = SETTLE_S,
+        *,
+        seen: Callable[[StatusReport], None] = lambda _report: None,
     ) -> StatusReport:
         """Wait until the unit is in one of ``states``; without any, until it stays where it is.
 
-        Raises ``CommandMissedItsGoal`` after ``timeout_s``; None waits without an end.
+        ``seen`` gets every report on the way. Raises ``CommandMissedItsGoal`` after ``timeout_s``;
+        None waits without an end.
         """
         end_s = None if timeout_s is None else self._now_s() + timeout_s
         while True:
             report = self.status()
+            seen(report)
             # An acting state is on its way to another one; only in a wait state are both the same.
             there = report.state in states if states else report.state == report.state_requested
             if there:

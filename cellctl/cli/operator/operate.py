@@ -1,6 +1,6 @@
 """`cellctl clear|reset|start|…`: what an operator may ask of the running daemon."""
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -147,7 +147,7 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
     if wait and not (steps and report.state == "HELD"):
         # Without a time-out, because nobody knows how long a person keeps a run on hold.
         goal = ("COMPLETED", "HELD") if steps else ("COMPLETED",)
-        report = _arrived(client.settled(_ENDED, timeout_s=None), goal)
+        report = _arrived(client.settled(_ENDED, timeout_s=None, seen=_steps_told()), goal)
     _tell(report)
     new = [alarm for alarm in report.alarms if (alarm.number, alarm.since) not in known]
     for alarm in new:
@@ -178,6 +178,19 @@ def _show_result(report: StatusReport, *, dry_run: bool) -> None:
         typer.echo("the dry run has ended before the first step in contact")
     elif report.result != "good":
         raise CommandMissedItsGoal(f"the result is {report.result}")
+
+
+def _steps_told() -> Callable[[StatusReport], None]:
+    """Tells each step as it begins, beside the result: a run lasts minutes."""
+    told = ""
+
+    def tell(report: StatusReport) -> None:
+        nonlocal told
+        if report.step not in ("", told):
+            told = report.step
+            typer.echo(told, err=True)
+
+    return tell
 
 
 def _arrived(report: StatusReport, goal: Collection[str]) -> StatusReport:

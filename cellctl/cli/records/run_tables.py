@@ -16,6 +16,7 @@ from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead
 from cellctl.records.figures import NO_LIMIT, verdicts
 from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.acceptance.faults import fault_box
+from cellctl.records.report.acceptance.table import limit_text
 from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 
@@ -56,8 +57,8 @@ def show_record(record: RunRecord, audit: Sequence[AuditEntry], *, as_json: bool
 def gauge_line(record: RunRecord, entry: Gauge, entered: Sequence[AuditEntry]) -> str:
     """One entry with who, when, with which gauge, and what it says."""
     verdict = judge_gauge(record, entry)
-    least_mm = gauge_limits(record).get(entry.hole, NO_LIMIT).lower
-    limit = "" if least_mm is None else f", at least {least_mm:.2f} mm: {verdict}"
+    required = gauge_limits(record).get(entry.hole, NO_LIMIT)
+    limit = "" if required == NO_LIMIT else f", required {limit_text(required, 'mm')}: {verdict}"
     with_gauge = f", gauge {entry.gauge_id}" if entry.gauge_id else ""
     replaced = "" if entry in record.gauges else ", replaced by a later entry"
     return (

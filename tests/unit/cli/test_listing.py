@@ -10,11 +10,13 @@ from typing import Any
 
 import pytest
 import typer
+from typer.testing import CliRunner
 
 from cellctl.cli import commands
 from cellctl.cli.listing import CELL, FILES, OPERATOR, Listed
 from cellctl.cli.operator import commands as operator_commands
 from cellctl.records import RunStore
+from cellctl.version import software
 from tests.unit.records.sample import good_run
 
 ROOT = Path(__file__).parents[3]
@@ -96,3 +98,9 @@ def test_only_matings_and_views_of_a_board_load_what_finds_roots(name: str) -> N
     """The views of a board are spread by a low-discrepancy sequence of SciPy's statistics."""
     heavy = ("scipy.optimize", "scipy.signal", "scipy.stats")
     assert loaded_by(f"check config/{name}.toml", heavy)[1] == ""
+
+
+def test_the_version_is_told_with_its_revision() -> None:
+    told = CliRunner().invoke(commands.whole_app(), ["--version"])
+    assert told.exit_code == 0
+    assert told.output.strip() == software()

@@ -42,8 +42,16 @@ _VERDICTS = {
 
 
 def acceptance(record: RunRecord, brought: Sequence[RequirementGroup]) -> ReportSection:
-    """What a process brings first, then the plug gauges, then every other figure with a limit."""
-    groups = (*brought, *_gauges(record), *_others(record, brought))
+    """What a process brings on the part, the plug gauges, what it brings on the way there, then
+    every other figure with a limit.
+
+    A table that is longer than the first sheet goes on behind the signatures: gauges that were
+    entered are of the part and stand on that sheet; nobody misses there those that were not.
+    """
+    gauges = tuple(_gauges(record))
+    ahead = gauges if record.gauges else ()
+    behind = () if ahead else gauges
+    groups = (*brought[:1], *ahead, *brought[1:], *behind, *_others(record, brought))
     phases = {phase.id: phase.label for phase in record.phases}
     rows = tuple(row for group in groups for row in _rows(group, phases))
     table = ReportTable(_COLUMNS, rows, numbers=False)

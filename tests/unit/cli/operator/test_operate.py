@@ -217,6 +217,22 @@ def test_only_a_good_end_is_a_success(daemon: Agreeable, arguments: list[str]) -
     assert fault_of(cellctl(*arguments, "--wait")) is CommandMissedItsGoal
 
 
+def test_whoever_waits_for_a_run_sees_its_steps(
+    daemon: Agreeable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    daemon.leads_to["start"] = "EXECUTE"
+    coming = iter(("10 measure frame", "10 measure frame", "20 measure deck", ""))
+
+    def nap(_s: float) -> None:
+        step = next(coming)
+        daemon.shows |= {"step": step, "state": "EXECUTE" if step else "COMPLETED"}
+
+    monkeypatch.setattr(time, "sleep", nap)
+    done = cellctl("start", "--serial", "S", "--wait")
+    assert done.exit_code == 0, done.output
+    assert done.stderr.splitlines() == ["10 measure frame", "20 measure deck"]
+
+
 def test_what_takes_too_long_is_not_waited_for(
     daemon: Agreeable,
 ) -> None:

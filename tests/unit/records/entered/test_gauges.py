@@ -111,8 +111,8 @@ def test_the_command_tells_of_the_entry_before(store: RunStore, run: int) -> Non
     CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.70", *options, *where])
     told = CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.99", *options, *where]).stdout
     by = f"OP-7, typed by {terminal_user()}"
-    assert f"5.70 mm ({by}), at least 5.80 mm: fail, gauge PG-3" in told
-    assert f"5.99 mm ({by}), at least 5.80 mm: pass" in told
+    assert f"5.70 mm ({by}), required 5.8 to 6 mm: fail, gauge PG-3" in told
+    assert f"5.99 mm ({by}), required 5.8 to 6 mm: pass" in told
 
 
 def test_a_run_that_nobody_has_closed_has_no_part_to_gauge(store: RunStore) -> None:
