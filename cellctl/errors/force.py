@@ -92,7 +92,11 @@ class ForceLimitExceeded(ForceError):
     number = 512
     text = "Force limit exceeded"
     cause = "Contact where none was expected, a wrong payload, or a robot that stopped too late."
-    remedy = "Look at the force curve in the record; inspect the parts before the next attempt."
+    remedy = (
+        "Look at the force curve in the record; inspect the parts before the next attempt. In a "
+    )
+    remedy += "move that touches nothing: compare `free_force_n` of the sensor with what its load "
+    remedy += "makes of a start (docs/guard.md)."
 
 
 class FlangePoseStale(ForceError):

@@ -60,8 +60,12 @@ class RecordNotWritten(RecordsError):
 
     number = 803
     text = "A record could not be written"
-    cause = "Disk full, disk failing, or the file system has become read-only."
-    remedy = "Repair the disk, then restart the daemon: after a failed write nothing is retried."
+    cause = (
+        "Disk full, failing or read-only; or a user who may not write the store types a command."
+    )
+    remedy = (
+        "Repair the disk and restart the daemon, which retries nothing; type as the cell's user."
+    )
 
 
 class StoreLocked(RecordsError):

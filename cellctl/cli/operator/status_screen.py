@@ -31,6 +31,10 @@ _NEXT = {
     "`cellctl reset`: it lifts off and clears the station",
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
+_NEXT_AFTER_PROCEDURE = (
+    "what the guide of the procedure asks for at its end, and see that nothing hangs in an open "
+    "gripper; then `cellctl reset`"
+)
 _NEXT_IN_IDLE = {
     "PRODUCTION": "`cellctl start --serial SERIAL`; before a procedure `cellctl mode maintenance`",
     "MAINTENANCE": "`cellctl procedure NUMBER`; before a part `cellctl mode production`",
@@ -135,6 +139,9 @@ def _next(report: StatusReport) -> str:
     if report.state == "IDLE":
         refused = report.permitted.get(_BEGINS.get(report.mode, ""), "")
         return f"Start is refused: {refused}" if refused else _NEXT_IN_IDLE[report.mode]
+    if (report.state, report.mode) == ("COMPLETED", "MAINTENANCE"):
+        # Nothing was joined: whoever opened the gripper now might drop the part that was weighed.
+        return _NEXT_AFTER_PROCEDURE
     return _NEXT.get(report.state, "wait; `cellctl hold` pauses at the next safe point")
 
 

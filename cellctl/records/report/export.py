@@ -9,7 +9,8 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.atomic_files import write_durably
-from cellctl.errors.records import ExportFolderTaken, RecordNotWritten, ValueRefused
+from cellctl.errors.config import OutputNotWritten
+from cellctl.errors.records import ExportFolderTaken, ValueRefused
 from cellctl.records.entered.gauges import part_verdict
 from cellctl.records.entered.notes import notes_of
 from cellctl.records.entries import RunRecord
@@ -35,7 +36,7 @@ def export_run(
 
     The folder gets ``report.html``, ``run.json`` and every file of the run under its name; with
     ``single_file`` the pictures are inside the report. ``pages`` is what the process of the run
-    adds to the report. Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten``, and
+    adds to the report. Raises ``RunUnknown``, ``ArtefactDamaged``, ``OutputNotWritten``, and
     ``ExportFolderTaken`` before anything is written.
     """
     record = store.run(number)
@@ -71,7 +72,7 @@ def write_report(
     """Write the report of a run as one file, HTML or PDF, with its pictures inside.
 
     ``tell`` hears how far a PDF is.
-    Raises ``RunUnknown``, ``ArtefactDamaged``, ``RecordNotWritten`` and ``PdfNotMade``.
+    Raises ``RunUnknown``, ``ArtefactDamaged``, ``OutputNotWritten`` and ``PdfNotMade``.
     """
     record = store.run(number)
     page = render(_view(store, record, pages, _inside(store, record)))
@@ -140,7 +141,7 @@ def _write(path: Path, data: bytes) -> None:
         # run, also when this run is exported again.
         write_durably(path, data)
     except OSError as error:
-        raise RecordNotWritten(f"{path}: {error.strerror}") from error
+        raise OutputNotWritten(f"{path}: {error.strerror}") from error
 
 
 def _plain(value: Any) -> str:

@@ -395,7 +395,8 @@ def test_the_screen_calls_an_awaited_touch_no_stop_request() -> None:
         ({"state": "IDLE", "permitted": {"start": "a calibration"}}, "refused: a calibration"),
         ({"state": "EXECUTE"}, "`cellctl hold`"),
         ({"state": "HELD"}, "`cellctl unhold`"),
-        ({"state": "COMPLETED"}, "`cellctl reset`"),
+        ({"state": "COMPLETED"}, "open the gripper; then `cellctl reset`"),
+        ({"state": "COMPLETED", "mode": "MAINTENANCE"}, "the guide of the procedure"),
         ({"state": "CLEARING", "state_requested": "STOPPED"}, "wait"),
     ],
 )

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from cellctl.errors.config import OutputNotWritten
 from cellctl.errors.records import (
     ArtefactDamaged,
     ExportFolderTaken,
-    RecordNotWritten,
     ValueRefused,
 )
 from cellctl.records import RunResult, RunStore
@@ -228,7 +228,7 @@ def test_an_export_that_the_disk_has_no_room_for_leaves_the_older_one_whole(
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(whole) // 2, limits[1]))
     try:
-        with pytest.raises(RecordNotWritten, match="File too large"):
+        with pytest.raises(OutputNotWritten, match="File too large"):
             write_report(store, number, path)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
