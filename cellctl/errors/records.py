@@ -60,12 +60,8 @@ class RecordNotWritten(RecordsError):
 
     number = 803
     text = "A record could not be written"
-    cause = (
-        "Disk full, failing or read-only; or a user who may not write the store types a command."
-    )
-    remedy = (
-        "Repair the disk and restart the daemon, which retries nothing; type as the cell's user."
-    )
+    cause = "Disk full, failing or read-only; or a command of a user who may not write the store."
+    remedy = "Repair the disk, restart the daemon; nothing is retried. Type as the cell's user."
 
 
 class StoreLocked(RecordsError):
