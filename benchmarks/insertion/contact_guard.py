@@ -26,14 +26,25 @@ _BLOCK = 4096
 class SensorFault:
     """A sensor that tells something else than what acts on it, from a moment on."""
 
-    def __init__(self, told: Callable[[Array, Array], Array]) -> None:
-        """``told``: what it tells for a true sample and for the last one before the fault."""
+    def __init__(
+        self,
+        told: Callable[[Array, Array], Array],
+        *,
+        begins_with: Callable[[Array], bool] | None = None,
+    ) -> None:
+        """``told``: what it tells for a true sample and for the last one before the fault.
+
+        ``begins_with``: the true sample with which the fault begins; None where a time says it.
+        """
         self.begins_s = np.inf
         """Beginning on the clock of the world; set by whoever knows when."""
+        self.begins_with = begins_with
         self._told, self._last = told, np.zeros(6)
 
     def tell(self, sample: Array, now_s: float) -> Array:
         """What the sensor tells for one true sample, shape (6,)."""
+        if np.isinf(self.begins_s) and self.begins_with is not None and self.begins_with(sample):
+            self.begins_s = now_s
         if now_s < self.begins_s:
             self._last = sample
             return sample

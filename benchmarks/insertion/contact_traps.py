@@ -37,6 +37,8 @@ from fakes.world.peg.fit import Fit
 
 _BEGIN_M = 0.4e-3
 """Height of the tip over the face at the begin."""
+_WINDOW_MS = 20
+"""The limit of the insertion holds for the mean over this time (R3 of the study)."""
 _OVER = RigidTransform.from_matrix(np.diag([1.0, -1.0, -1.0, 1.0]))
 
 
@@ -54,6 +56,7 @@ class TrapState(StrEnum):
     WRONG_FACE = "face touched 1 mm wrong"
     SLIPS_TO_STOP = "slips in a blocked hole up to a stop in the fingers"
     ZERO_JUMPS = "zero of the sensor jumps in the feed"
+    ZERO_JUMPS_AT_SEAT = "zero of the sensor jumps in the rise at the seat"
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,8 +72,22 @@ class ContactTrap:
     """True where the peg truly is at the seat of a hole as drawn."""
     by_curve: str
     """What `cellctl judge-insertion` says of the ticks, or the number of its fault."""
+    force_n: float
+    """Greatest true force over 20 ms."""
+    limit_n: float
+    """What it may be: the limit of the insertion."""
     curve: str
     """Ticks, as the record of a run has them."""
+
+    @property
+    def found(self) -> tuple[str, ...]:
+        """What must never happen, in words."""
+        found = []
+        if not self.seated and (self.inserted or self.by_curve == "inserted"):
+            found.append("called inserted and is not")
+        if self.force_n > self.limit_n:
+            found.append(f"{self.force_n:.1f} N of {self.limit_n:g}, {self.fault or 'no fault'}")
+        return tuple(found)
 
 
 @dataclass(slots=True, eq=False)
@@ -105,7 +122,7 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
         observer=log,
         clock=lambda: world.now_s,
     )
-    if made.sensor is not None:
+    if made.sensor is not None and made.sensor.begins_with is None:
         # The failure begins in the middle of a feed, with whatever is felt there.
         made.sensor.begins_s = world.now_s + float(rng.uniform(1.0, 8.0))
 
@@ -122,7 +139,17 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
     except CellError as raised:
         fault = f"F{raised.number}"
     by_curve = _judged(log.text(), judged_part(cell.recipe, cell.plan, 0.0))
-    return ContactTrap(state, seed, inserted, fault, world.seated, by_curve, log.text())
+    return ContactTrap(
+        state,
+        seed,
+        inserted,
+        fault,
+        world.seated,
+        by_curve,
+        round(world.peaks.force_n[_WINDOW_MS], 2),
+        task.limits.insertion_n,
+        log.text(),
+    )
 
 
 def _judged(curve: str, part: JudgedPart) -> str:
@@ -230,6 +257,18 @@ def _zero_jumps(made: _Made, rng: np.random.Generator) -> _Made:
     return made
 
 
+def _zero_jumps_at_seat(made: _Made, rng: np.random.Generator) -> _Made:
+    """In the rise, where the force that it takes away may hide behind what is felt."""
+    begins_n = float(rng.uniform(6.0, 17.0))
+    # By more, and it would act with the feed; by less, and it would not matter.
+    jump_n = float(rng.uniform(0.8, 1.0)) * begins_n
+    jump = np.array([0.0, 0.0, jump_n, 0.0, 0.0, 0.0])
+    made.sensor = SensorFault(
+        lambda sample, _last: sample + jump, begins_with=lambda sample: -sample[2] > begins_n
+    )
+    return made
+
+
 def _wrong_face(made: _Made, rng: np.random.Generator) -> _Made:
     made.z0_m = 1e-3 * float(rng.choice([-1.0, 1.0]))
     return made
@@ -247,4 +286,5 @@ _MAKE: Mapping[TrapState, Callable[[_Made, np.random.Generator], _Made]] = {
     TrapState.WRONG_FACE: _wrong_face,
     TrapState.SLIPS_TO_STOP: _slipping_to_stop,
     TrapState.ZERO_JUMPS: _zero_jumps,
+    TrapState.ZERO_JUMPS_AT_SEAT: _zero_jumps_at_seat,
 }

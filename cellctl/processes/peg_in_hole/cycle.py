@@ -156,6 +156,7 @@ async def feed_and_judge(
         held_way_m=fed.held_way_m,
         unrubbed_way_m=fed.unrubbed_way_m,
         with_feed_n=fed.with_feed_n,
+        dropped_n=fed.dropped_n,
         capture=capture,
         greatest_force_n=max(fed.greatest_force_n, greatest_before_n(task)),
         grip_force_n=plan.grip_force_n,

@@ -10,7 +10,7 @@ ByTouchError
 └── PegNotInserted
     ├── SensorDead, PegSlipped, NotSeated, FalseSeat,
     │   HoleTooWide, PegNotHeld                     590–595  the verdict
-    └── ForceActsWithFeed                           599      feed and verdict
+    └── ForceActsWithFeed, ForceDropped             599, 557  feed and verdict
 """
 
 from typing import ClassVar
@@ -239,5 +239,21 @@ class ForceActsWithFeed(PegNotInserted):
     remedy = (
         "The part was pushed harder than the sensor shows: take it out by hand and look at it. "
         "Check cable and mounting of the sensor, and its zero with nothing touching."
+    )
+    leaves_hole = False
+
+
+class ForceDropped(PegNotInserted):
+    """The force fell at once while the tip did not go back: the zero of the sensor has jumped."""
+
+    number = 557
+    text = "The force dropped while the part was pushed on"
+    cause = (
+        "The zero of the force sensor has jumped, or something has given way: a contact or a lock "
+        "that snapped in, a part that broke."
+    )
+    remedy = (
+        "The part may have been pushed harder than the sensor shows: take it out by hand and look "
+        "at it. Check cable and mounting of the sensor, and its zero with nothing touching."
     )
     leaves_hole = False

@@ -134,6 +134,7 @@ def run_trap(task: SearchTask, state: PegState, seed: int) -> TrapOutcome:
         held_way_m=0.0,
         unrubbed_way_m=None,
         with_feed_n=0.0,
+        dropped_n=0.0,
         capture=capture,
         greatest_force_n=greatest_n,
         grip_force_n=_GRIP_N,

@@ -14,6 +14,7 @@ from cellctl.cell.contact_motion.motions import (
 )
 from cellctl.processes.peg_in_hole.faults import (
     ForceActsWithFeed,
+    ForceDropped,
     HoleBlocked,
     NotSeated,
     PegJammed,
@@ -29,6 +30,7 @@ from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
 from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.insertion.with_feed import ForceWithFeed, with_feed_n
+from cellctl.processes.peg_in_hole.insertion.zero_jump import ZeroJump, dropped_n
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 SEAT_TOLERANCE_M = 0.3e-3
@@ -55,6 +57,8 @@ class Fed:
     """Likewise; None for a part without contacts."""
     with_feed_n: float
     """Of the last feed, as ``with_feed_n`` has it."""
+    dropped_n: float
+    """Likewise, as ``dropped_n`` has it."""
     greatest_force_n: float
     recoveries: tuple[str, ...]
     samples: tuple[ContactSample, ...]
@@ -66,7 +70,7 @@ async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float
     The touches of the face had yielded by ``face_yields_m``, so that frame A lies deeper than the
     face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with
     the figures where the peg stands, ``NotSeated`` where no seat stops it, and
-    ``ForceActsWithFeed``.
+    ``ForceActsWithFeed`` or ``ForceDropped``.
     """
     if task.fit.keys is not None:
         await find_keyway(motions, task, task.fit.keys)
@@ -104,9 +108,18 @@ class _Feed:
         limit_n = self._task.limits.insertion_n
         yields_m = limit_n / self._task.cell.stiffness_n_m
         target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
-        watched = ForceWithFeed(self._task.cell)
-        motion = await self._motions.feed(target_m, limit_n, watched.take)
+        watched, jump = ForceWithFeed(self._task.cell), ZeroJump(self._task.cell)
+        ended_by: list[bool] = []
+
+        def wrong(sample: ContactSample) -> bool:
+            # Both take every sample.
+            ended_by[:] = (watched.take(sample), jump.take(sample))
+            return any(ended_by)
+
+        motion = await self._motions.feed(target_m, limit_n, wrong)
         self._samples += motion.samples
+        if motion.ended is Ended.CONDITION and not ended_by[0]:
+            raise ForceDropped(f"by {jump.dropped_n:.1f} N: {Standing.of(motion.last)}")
         if motion.ended is Ended.CONDITION:
             raise ForceActsWithFeed(
                 f"{watched.greatest_n:.1f} N into the hole: {Standing.of(motion.last)}"
@@ -131,6 +144,7 @@ class _Feed:
             held_way_m=held_way_m(motion.samples, fit, cell.friction, cell.stiffness_n_m),
             unrubbed_way_m=unrubbed_way_m(motion.samples, fit, cell.stiffness_n_m),
             with_feed_n=with_feed_n(motion.samples, cell),
+            dropped_n=dropped_n(motion.samples, cell),
             greatest_force_n=greatest_axial_n(self._samples),
             recoveries=recoveries,
             samples=tuple(self._samples),

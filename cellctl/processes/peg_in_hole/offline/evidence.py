@@ -15,6 +15,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
 )
 from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.insertion.with_feed import LEAST_SIGN_N, with_feed_n
+from cellctl.processes.peg_in_hole.insertion.zero_jump import dropped_n
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
 from cellctl.processes.peg_in_hole.offline.split import CurveParts, by_motions
@@ -41,6 +42,7 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
         held_way_m=held_way_m(parts.feed, fit, task.cell.friction, task.cell.stiffness_n_m),
         unrubbed_way_m=unrubbed_way_m(parts.feed, fit, task.cell.stiffness_n_m),
         with_feed_n=with_feed_n(parts.feed, task.cell),
+        dropped_n=dropped_n(parts.feed, task.cell),
         capture=_capture(parts, task),
         greatest_force_n=max(greatest_axial_n(curve.samples), task.greatest_n),
         grip_force_n=task.grip_n,

@@ -35,6 +35,8 @@ class InsertionEvidence:
     """Way on which the contacts of a part should rub and were not felt; for parts with contacts."""
     with_feed_n: float | None
     """Greatest force that has acted with the feed instead of against it."""
+    dropped_n: float | None
+    """Greatest drop of the force in the feed that no way back explains."""
     capture: LateralCapture | None
     greatest_force_n: float | None
     """Along the axis, ever since the part was gripped."""

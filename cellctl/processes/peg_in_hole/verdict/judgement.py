@@ -15,6 +15,7 @@ from cellctl.calibration.checks import Checks, LimitCheck
 from cellctl.processes.peg_in_hole.faults import (
     FalseSeat,
     ForceActsWithFeed,
+    ForceDropped,
     HoleTooWide,
     NotSeated,
     PegNotHeld,
@@ -23,6 +24,7 @@ from cellctl.processes.peg_in_hole.faults import (
     SensorDead,
 )
 from cellctl.processes.peg_in_hole.insertion.with_feed import most_with_feed_n
+from cellctl.processes.peg_in_hole.insertion.zero_jump import most_dropped_n
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 
@@ -44,6 +46,7 @@ SLOPE = "rise of the force at the seat"
 RESISTED, PLAY_X, PLAY_Y = "directions that resist", "play along x", "play along y"
 STEADY, ALIVE = "depth change when pushed sideways", "force change when pushed sideways"
 HELD, WITH_FEED = "way held back before the seat", "force with the feed"
+DROPPED = "drop of the force in the feed"
 UNRUBBED = "way without the force of its contacts"
 SLIP, RETOUCH = "greatest force over grip force", "error of the touch on the rear"
 KEYED, PULL = "directions that resist a turn", "pull that was held"
@@ -53,6 +56,7 @@ _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
     # resists a push, which looks like a dead sensor too; hence slip before that. A sensor that
     # stays at a value looks like a part that is held back.
     (frozenset({WITH_FEED}), ForceActsWithFeed),
+    (frozenset({DROPPED}), ForceDropped),
     (frozenset({SLIP, RETOUCH}), PegSlipped),
     (frozenset({ALIVE}), SensorDead),
     (frozenset({HELD, UNRUBBED}), PegSlipped),
@@ -153,6 +157,7 @@ def _feed_checks(evidence: InsertionEvidence, task: JudgedTask) -> Checks:
     checks = [
         LimitCheck(HELD, _known(evidence.held_way_m) / _MM, HELD_MM, "mm"),
         LimitCheck(WITH_FEED, _known(evidence.with_feed_n), most_with_feed_n(task.cell), "N"),
+        LimitCheck(DROPPED, _known(evidence.dropped_n), most_dropped_n(task.cell), "N"),
     ]
     if task.fit.contacts is not None:
         unrubbed_mm = _known(evidence.unrubbed_way_m) / _MM

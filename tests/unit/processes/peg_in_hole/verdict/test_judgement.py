@@ -2,7 +2,12 @@ from dataclasses import fields, replace
 
 import pytest
 
-from cellctl.processes.peg_in_hole.faults import ForceActsWithFeed, PegNotHeld, PegSlipped
+from cellctl.processes.peg_in_hole.faults import (
+    ForceActsWithFeed,
+    ForceDropped,
+    PegNotHeld,
+    PegSlipped,
+)
 from cellctl.processes.peg_in_hole.plan.task import PartContacts
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, PegSeatLimits, judge_peg
@@ -17,6 +22,7 @@ GOOD = InsertionEvidence(
     held_way_m=0.02e-3,
     unrubbed_way_m=0.0,
     with_feed_n=0.5,
+    dropped_n=0.9,
     capture=LateralCapture(4, 0.04e-3, 0.05e-3, 0.01e-3, 30.0),
     greatest_force_n=12.0,
     grip_force_n=40.0,
@@ -30,7 +36,7 @@ def test_all_items_make_an_inserted_peg() -> None:
     judgement = judge_peg(GOOD, pin(), SEAT)
     assert judgement.inserted
     assert judgement.to_record()["fault"] is None
-    assert len(judgement.checks) == 14
+    assert len(judgement.checks) == 15
 
 
 @pytest.mark.parametrize(
@@ -72,6 +78,11 @@ def test_a_part_whose_contacts_were_not_felt_has_slipped() -> None:
 def test_a_force_with_the_feed_is_none_that_a_hole_makes() -> None:
     judgement = judge_peg(replace(GOOD, with_feed_n=12.0), pin(), SEAT)
     assert isinstance(judgement.fault, ForceActsWithFeed)
+
+
+def test_a_force_that_drops_in_the_feed_is_not_to_be_believed() -> None:
+    judgement = judge_peg(replace(GOOD, dropped_n=4.0), pin(), SEAT)
+    assert isinstance(judgement.fault, ForceDropped)
 
 
 def test_a_part_without_keys_needs_no_turn() -> None:

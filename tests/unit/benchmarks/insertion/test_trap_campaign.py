@@ -1,0 +1,36 @@
+import sys
+from dataclasses import replace
+
+import pytest
+
+from benchmarks.insertion import trap_campaign
+from benchmarks.insertion.contact_traps import ContactTrap, TrapState
+
+GOOD = ContactTrap(
+    TrapState.INSERTED, 1, inserted=True, fault="", seated=True, by_curve="inserted", force_n=19.7,
+    limit_n=30.0, curve="",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("trap", "code"),
+    [
+        (GOOD, 0),
+        (replace(GOOD, seated=False), 1),
+        (replace(GOOD, seated=False, inserted=False), 1),
+        (replace(GOOD, force_n=38.9), 1),
+        (replace(GOOD, force_n=38.9, inserted=False, by_curve="not inserted", fault="F592"), 1),
+        (replace(GOOD, inserted=False, by_curve="not inserted", fault="F592"), 0),
+    ],
+)
+def test_a_false_verdict_and_a_force_over_the_limit_fail(
+    trap: ContactTrap,
+    code: int,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setattr(trap_campaign, "farmed", lambda *_: [trap])
+    monkeypatch.setattr(sys, "argv", ["trap_campaign"])
+    assert trap_campaign.main() == code
+    if trap.force_n > trap.limit_n:
+        assert "38.9 N of 30" in capsys.readouterr().out
