@@ -21,6 +21,9 @@ Matrix = tuple[tuple[float | None, ...], ...]
 
 PRODUCTION = "production"
 """Mode of the runs that make parts."""
+MAINTENANCE = "maintenance"
+"""Mode of the runs of procedures, and their process where they work on no recipe's parts: such a
+procedure may belong to several."""
 DRY_RUN = "dry run"
 """Mode of a run that ends before the first contact, and makes none."""
 

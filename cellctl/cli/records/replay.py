@@ -11,6 +11,7 @@ from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.cli.records.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.errors.records import NotReplayable
+from cellctl.records.entries import MAINTENANCE
 from cellctl.records.replayed import Replayed
 from cellctl.runtime.process import Process
 
@@ -40,6 +41,11 @@ def replay(
 def _replayed(run: int, data_dir: Path | None) -> list[Replayed]:
     with opened_store(data_dir) as store:
         record = store.run(run)
+        if record.head.process == MAINTENANCE:
+            raise NotReplayable(
+                f"run {run} is the procedure {record.head.recipe_name}, whose record keeps what it "
+                "has found and not the readings it was computed from"
+            )
         calibrations = {one.id: one for one in store.calibrations()}
         process = _process(record.head.process)
         files = store.artefacts

@@ -13,7 +13,7 @@ from cellctl.errors import CellError
 from cellctl.errors.records import RecordsError, RecordSilent
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
-from cellctl.records.entries import Document, RunResult
+from cellctl.records.entries import MAINTENANCE, Document, RunResult
 from cellctl.records.files.disk_space import require_space
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
@@ -22,10 +22,6 @@ from cellctl.runtime.jobs.provenance import cell_artefact, provenance
 from cellctl.version import software
 
 _log = log.get(__name__)
-
-MAINTENANCE = "maintenance"
-"""Mode of the runs of procedures, and their process: a procedure may belong to several."""
-
 
 CLOSE_PATIENCE_S = 120.0
 """A run that is not closed counts as interrupted after the next start, also one that made a good

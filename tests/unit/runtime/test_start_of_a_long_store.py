@@ -8,9 +8,8 @@ from sqlalchemy import event
 
 from cellctl.packml.result import Result
 from cellctl.records.database.schema import RunRow
-from cellctl.records.entries import PRODUCTION, RunResult
+from cellctl.records.entries import MAINTENANCE, PRODUCTION, RunResult
 from cellctl.records.store import RunStore
-from cellctl.runtime.jobs.record import MAINTENANCE
 from tests.unit.daemon_rig import DaemonRig
 from tests.unit.records.conftest import start
 
