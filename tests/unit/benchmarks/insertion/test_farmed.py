@@ -85,7 +85,7 @@ def test_an_interrupted_campaign_keeps_what_it_has(tmp_path: Path) -> None:
 PEAKS = {CyclePhase.SEARCH: ForcePeaks({1: 9.0, 3: 8.0, 20: 7.0}, {1: 0.1, 3: 0.1, 20: 0.1})}
 CYCLE = CycleOutcome(7, called_good=True, seated=True, search_s=10.0, cycle_s=40.0, peaks=PEAKS)
 FAULTY = CycleOutcome(7, fault="F591", height_m=1e-3, cycle_s=40.0)
-TRAP = ContactTrap(TrapState.ON_FACE, 7, False, "F592", False, "not inserted", "")
+TRAP = ContactTrap(TrapState.ON_FACE, 7, False, "F592", False, "not inserted", 12.5, 30.0, "")
 
 
 @pytest.mark.parametrize(
