@@ -19,13 +19,9 @@ Six = tuple[float | None, ...]
 Matrix = tuple[tuple[float | None, ...], ...]
 """6 x 6 covariance in the order of ``Six``, in mm and degrees."""
 
-PRODUCTION = "production"
-"""Mode of the runs that make parts."""
-MAINTENANCE = "maintenance"
-"""Mode of the runs of procedures, and their process where they work on no recipe's parts: such a
-procedure may belong to several."""
-DRY_RUN = "dry run"
-"""Mode of a run that ends before the first contact, and makes none."""
+PRODUCTION, MAINTENANCE, DRY_RUN = "production", "maintenance", "dry run"
+"""Modes of the runs that make parts; of procedures, whose process it is too where they work on no
+recipe's parts; of runs that end before the first contact, and make none."""
 
 
 class RunResult(StrEnum):
