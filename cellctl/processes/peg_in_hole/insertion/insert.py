@@ -108,7 +108,7 @@ class _Feed:
         limit_n = self._task.limits.insertion_n
         yields_m = limit_n / self._task.cell.stiffness_n_m
         target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
-        watched, jump = ForceWithFeed(self._task.cell), ZeroJump(self._task.cell)
+        watched, jump = ForceWithFeed(self._task.cell), ZeroJump(self._task)
         ended_by: list[bool] = []
 
         def wrong(sample: ContactSample) -> bool:
@@ -144,7 +144,7 @@ class _Feed:
             held_way_m=held_way_m(motion.samples, fit, cell.friction, cell.stiffness_n_m),
             unrubbed_way_m=unrubbed_way_m(motion.samples, fit, cell.stiffness_n_m),
             with_feed_n=with_feed_n(motion.samples, cell),
-            dropped_n=dropped_n(motion.samples, cell),
+            dropped_n=dropped_n(motion.samples, self._task),
             greatest_force_n=greatest_axial_n(self._samples),
             recoveries=recoveries,
             samples=tuple(self._samples),

@@ -3,14 +3,15 @@
 Arm and contact are a spring: the force along the axis falls by no more than the tip goes back. One
 that drops at once while the tip stands or goes on has lost its zero, and the feed would push with
 as much more as it has dropped. Friction that lets go drops too, by a fraction of the force at the
-seat. Source: sensor_spike in section 5.2 of the study of insertion by touch.
+seat. Only depths between the walls count: on a chamfer a peg slides down all at once. Source:
+sensor_spike in section 5.2 of the study of insertion by touch.
 """
 
 from collections import deque
 from collections.abc import Sequence
 
 from cellctl.cell.contact_motion.motions import ContactSample
-from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell
+from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 
 _LEAST_N = 3.0
 """A smaller drop is left to friction that lets go."""
@@ -29,8 +30,8 @@ def most_dropped_n(cell: JudgedCell) -> float:
 class ZeroJump:
     """Takes the samples of one feed, and knows the greatest drop that no way back explains."""
 
-    def __init__(self, cell: JudgedCell) -> None:
-        self._cell = cell
+    def __init__(self, task: JudgedTask) -> None:
+        self._cell, self._entry_m = task.cell, task.fit.entry_depth_m
         self._latest: deque[tuple[float, float]] = deque(maxlen=_SAMPLES)
         """Depth and force against the feed."""
         self.dropped_n = 0.0
@@ -39,8 +40,10 @@ class ZeroJump:
     def take(self, sample: ContactSample) -> bool:
         """Take the next one; whether the force has dropped by so much that its zero is another."""
         depth_m, axial_n = float(sample.task_position_tip_m[2]), -float(sample.force_n[2])
+        if depth_m <= self._entry_m:
+            self._latest.clear()
         # A tick that found no new force repeats the last one.
-        if not self._latest or axial_n != self._latest[-1][1]:
+        elif not self._latest or axial_n != self._latest[-1][1]:
             self._latest.append((depth_m, axial_n))
             if len(self._latest) == _SAMPLES:
                 self.dropped_n = max(self.dropped_n, self._drop_n())
@@ -55,9 +58,9 @@ class ZeroJump:
         return base[1] - low[1] - self._cell.stiffness_n_m * way_back_m
 
 
-def dropped_n(feed: Sequence[ContactSample], cell: JudgedCell) -> float:
+def dropped_n(feed: Sequence[ContactSample], task: JudgedTask) -> float:
     """The greatest drop of the force in a feed, shown by two samples in a row."""
-    watched = ZeroJump(cell)
+    watched = ZeroJump(task)
     for sample in feed:
         watched.take(sample)
     return watched.dropped_n

@@ -42,7 +42,7 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
         held_way_m=held_way_m(parts.feed, fit, task.cell.friction, task.cell.stiffness_n_m),
         unrubbed_way_m=unrubbed_way_m(parts.feed, fit, task.cell.stiffness_n_m),
         with_feed_n=with_feed_n(parts.feed, task.cell),
-        dropped_n=dropped_n(parts.feed, task.cell),
+        dropped_n=dropped_n(parts.feed, task),
         capture=_capture(parts, task),
         greatest_force_n=max(greatest_axial_n(curve.samples), task.greatest_n),
         grip_force_n=task.grip_n,

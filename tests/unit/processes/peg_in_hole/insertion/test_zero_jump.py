@@ -5,7 +5,7 @@ from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.processes.peg_in_hole.insertion.zero_jump import ZeroJump, dropped_n, most_dropped_n
 from tests.unit.processes.peg_in_hole.tasks import pin
 
-CELL = pin(stiffness_n_m=1e5, force_sigma_n=0.1).cell
+TASK = pin(stiffness_n_m=1e5, force_sigma_n=0.1)
 STEP_MM = 0.01
 """One newton of arm and contact."""
 
@@ -28,14 +28,14 @@ RISE = [0.1 * number for number in range(10)] + [1.0 + number for number in rang
 
 
 def test_a_rise_at_the_seat_drops_by_nothing() -> None:
-    assert dropped_n(felt(RISE), CELL) == 0.0
+    assert dropped_n(felt(RISE), TASK) == 0.0
 
 
 @pytest.mark.parametrize("jump_n", [5.5, 10.0, 14.0])
 def test_a_zero_that_jumps_in_the_rise_is_told_within_three_ticks(jump_n: float) -> None:
     # Half of it in the tick of the jump: the sensor has a bandwidth.
     after = [RISE[-1] - 0.5 * jump_n, *(RISE[-1] - jump_n + 0.5 * one for one in range(1, 8))]
-    watched = ZeroJump(CELL)
+    watched = ZeroJump(TASK)
     told = [watched.take(sample) for sample in felt(RISE + after)]
     assert told.index(True) <= len(RISE) + 2
     # Less what the feed has added in the two ticks that prove it.
@@ -49,15 +49,23 @@ def test_an_arm_that_goes_back_takes_the_force_with_it() -> None:
     end_m = ways[len(RISE) - 1].task_position_tip_m[2]
     for number, sample in enumerate(ways[len(RISE) :], 1):
         sample.task_position_tip_m[2] = end_m - number * STEP_MM * 1e-3
-    assert dropped_n(ways, CELL) == pytest.approx(0.0, abs=1e-6)
+    assert dropped_n(ways, TASK) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_one_low_sample_is_a_spike_and_a_tick_without_a_new_force_counts_for_none() -> None:
-    assert dropped_n(felt([*RISE, 2.0, 15.0, 16.0, 17.0]), CELL) == 0.0
+    assert dropped_n(felt([*RISE, 2.0, 15.0, 16.0, 17.0]), TASK) == 0.0
     repeated = [force for force in RISE for _ in range(3)]
-    assert dropped_n(felt(repeated, STEP_MM / 3), CELL) == 0.0
+    assert dropped_n(felt(repeated, STEP_MM / 3), TASK) == 0.0
+
+
+def test_a_peg_that_slides_down_a_chamfer_is_none() -> None:
+    slid = [*felt(RISE), *felt([2.0] * 8)]
+    for sample in slid:
+        sample.task_position_tip_m[2] -= 11e-3
+    assert float(slid[-1].task_position_tip_m[2]) < TASK.fit.entry_depth_m
+    assert dropped_n(slid, TASK) == 0.0
 
 
 def test_the_limit_lies_above_friction_and_noise() -> None:
-    assert most_dropped_n(CELL) == 3.0
+    assert most_dropped_n(TASK.cell) == 3.0
     assert most_dropped_n(pin(force_sigma_n=0.5).cell) == 4.0
