@@ -1,12 +1,16 @@
 """A run in Maintenance mode: one procedure, chosen by its number."""
 
 import asyncio
+import re
+from collections.abc import Iterator
 
 from cellctl import log
+from cellctl.calibration.checks import Checks, checks_from_record
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
 from cellctl.packml.unit_command import UnitCommand
-from cellctl.records.entries import RunResult
+from cellctl.records.entries import Figure, RunResult
+from cellctl.records.figures import Limit, figure
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.job import Job
@@ -16,6 +20,8 @@ from cellctl.runtime.process import CellServices
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint
 
 _log = log.get(__name__)
+_NO_KEY = re.compile(r"[^a-z0-9]+")
+"""What stands between the words of a key; keys have dots of their own."""
 
 
 class MaintenanceJob(Job):
@@ -98,6 +104,9 @@ class MaintenanceJob(Job):
         """
         for warning in outcome.warnings:
             _log.warning("calibration", item=outcome.kind.name, warning=warning)
+        # Before the verdict: by how much a bad result is bad belongs into the record of its run.
+        if self.run_number:
+            await RunRecorder(self._store, self.run_number).figures(_figures(outcome))
         if not outcome.passed:
             reasons = "; ".join(_failed_checks(outcome)) or "see the record"
             # Kept, so that somebody can see from its picture and residuals why it failed. A disk
@@ -131,10 +140,22 @@ class MaintenanceJob(Job):
         return f"kept in {folder}"
 
 
+def _figures(outcome: ProcedureOutcome) -> Iterator[Figure]:
+    """Its checks, as any run has its figures."""
+    for check in _checks(outcome):
+        lower, upper = (check.limit, None) if check.side == "min" else (None, check.limit)
+        key = f"{outcome.kind.name}.{_NO_KEY.sub('_', check.name.lower()).strip('_')}"
+        yield figure(key, check.value, check.unit, label=check.name, limit=Limit(lower, upper))
+
+
+def _checks(outcome: ProcedureOutcome) -> Checks:
+    # What a process of another package gives need not have any.
+    return checks_from_record(outcome.record.get("checks", ()))
+
+
 def _failed_checks(outcome: ProcedureOutcome) -> list[str]:
-    checks = outcome.record.get("checks", ())
     return [
-        f"{check['name']} {check['value']:.4g}, limit {check['limit']:.4g} {check['unit']}".rstrip()
-        for check in checks
-        if not check["passed"]
+        f"{check.name} {check.value:.4g}, limit {check.limit:.4g} {check.unit}".rstrip()
+        for check in _checks(outcome)
+        if not check.passed
     ]

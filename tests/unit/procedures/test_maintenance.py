@@ -8,7 +8,7 @@ import pytest
 from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.calibration import ResultOutOfLimits
 from cellctl.processes.deck_to_frame.calibrations import STEREO_HEAD_1
-from cellctl.records.entries import RunResult
+from cellctl.records.entries import RunResult, Verdict
 from cellctl.records.store import RunStore
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.steps import HeldMeanwhile
@@ -88,6 +88,23 @@ async def test_a_bad_result_is_put_aside_with_its_reason(
     assert json.loads(aside.read_text())["checks"] == CHECKS
     assert await job.close(RunResult.ABORTED, ResultOutOfLimits("head_1")) is RunResult.ABORTED
     assert "F614" in (await rig.audit())[-1][2]["fault"]
+
+
+async def test_a_bad_result_leaves_its_figures_in_its_run(
+    rig: ProcedureRig, procedure: list[object]
+) -> None:
+    procedure.append(outcome(rig, passed=False))
+    job = rig.job(101)
+    await job.start()
+    with pytest.raises(ResultOutOfLimits) as refused:
+        await job.execute()
+    await job.close(RunResult.ABORTED, refused.value)
+    record = await rig.archive.do(RunStore.run, job.run_number)
+    found = {key: (one.value, one.unit, one.verdict) for key, one in record.newest_figures.items()}
+    assert found == {
+        "head_1.rms": (0.31, "px", Verdict.FAIL),
+        "head_1.views": (24.0, "", Verdict.PASS),
+    }
 
 
 async def test_a_bad_result_keeps_its_reason_when_it_cannot_be_put_aside(
