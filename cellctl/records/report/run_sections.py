@@ -12,6 +12,7 @@ from cellctl.records.entries import (
     Verdict,
 )
 from cellctl.records.figures import NO_LIMIT
+from cellctl.records.looks import RIMS, TAKEN
 from cellctl.records.parts import PARTS
 from cellctl.records.report.sections import (
     FactList,
@@ -40,7 +41,7 @@ from cellctl.records.units import words
 
 REPLAY_INPUT = ".input"
 """Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
-_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES})
+_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES, TAKEN, RIMS})
 FIT = "fit"
 """Entry of a pose's detail, with what ``_fit_row`` shows."""
 _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}

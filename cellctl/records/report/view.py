@@ -35,7 +35,7 @@ from cellctl.records.report.calibration_view import (
     head_lines,
     pose_lines,
 )
-from cellctl.records.report.exposures import exposures
+from cellctl.records.report.images import raw_images, rims
 from cellctl.records.report.pictures import PictureGroup, picture_groups
 from cellctl.records.report.sections import ProcessPages, ReportSection, Tile
 from cellctl.records.report.text import quantity
@@ -123,7 +123,8 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
             *pages.sections,
             *run_sections.unless_shown(record, pages.shows),
             run_sections.further_figures(record, pages.words, pages.documents),
-            exposures(record),
+            rims(record),
+            raw_images(record),
         ),
         pictures=picture_groups(sources.addresses),
         alarms=alarm_lines(record),
