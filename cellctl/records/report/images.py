@@ -1,6 +1,7 @@
 """The raw images of a run: when and how each was taken, and the rims that were measured in them."""
 
 from collections.abc import Mapping
+from pathlib import PurePosixPath
 from typing import Any
 
 from cellctl.records.entries import RunRecord
@@ -62,7 +63,9 @@ def _image(name: str, taken: TakenImage | None, exposed: Mapping[str, Any]) -> T
         _text(exposed.get("averaged")),
         _text(exposed.get("taken_again")),
     )
-    return TableRow((TableCell(name), *(TableCell(text) for text in texts)))
+    # Folder and ending, which all of them share, would push the last columns off a printed sheet.
+    image = PurePosixPath(name).name.partition(".")[0]
+    return TableRow((TableCell(image), *(TableCell(text) for text in texts)))
 
 
 def _rim(look: str, view: str, rim: MeasuredRim) -> TableRow:
