@@ -5,17 +5,28 @@ from typing import Annotated
 
 import typer
 
+from cellctl.records.entries import RunResult
 from cellctl.records.run_filter import RunFilter
 from cellctl.records.seals import LedgerHead
+from cellctl.spelling import nearest
 
 _DAY = ["%Y-%m-%d"]
 _HASH_DIGITS = 64
+_RESULTS = (*RunResult, "open")
+
+
+def _known(result: str) -> str:
+    """A result that no run can have finds none, which looks like an answer."""
+    if result and result not in _RESULTS:
+        raise typer.BadParameter(f"{nearest(result, _RESULTS)}one of {', '.join(_RESULTS)}")
+    return result
+
 
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 Serial = Annotated[str, typer.Option(help="Only this serial number.")]
 RecipeName = Annotated[str, typer.Option(help="Only of the recipe with this name.")]
 Operator = Annotated[str, typer.Option(help="Only this operator's.")]
-Result = Annotated[str, typer.Option(help="good, bad, stopped, aborted, interrupted, open.")]
+Result = Annotated[str, typer.Option(help=f"{', '.join(_RESULTS)}.", callback=_known)]
 FaultNumber = Annotated[int | None, typer.Option(help="Only where it came up.", min=1)]
 CalibrationId = Annotated[str, typer.Option(help="Only what used it; its identity.")]
 Since = Annotated[datetime | None, typer.Option(help="First day.", formats=_DAY)]

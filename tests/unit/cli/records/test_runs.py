@@ -54,6 +54,12 @@ def test_runs_are_listed_newest_first(runner: CliRunner, folder: str) -> None:
     assert "SAT-0043" not in one.stdout
 
 
+def test_a_result_that_no_run_can_have_is_refused() -> None:
+    refused = runner.invoke(app, ["list", "--result", "god"])
+    assert refused.exit_code == 2
+    assert "did you mean 'good'?" in refused.output
+
+
 def test_one_run_in_figures(runner: CliRunner, folder: str) -> None:
     result = runner.invoke(app, ["show", "1", "--data-dir", folder])
     assert result.exit_code == 0
