@@ -54,7 +54,7 @@ def test_runs_are_listed_newest_first(runner: CliRunner, folder: str) -> None:
     assert "SAT-0043" not in one.stdout
 
 
-def test_a_result_that_no_run_can_have_is_refused() -> None:
+def test_a_result_that_no_run_can_have_is_refused(runner: CliRunner) -> None:
     refused = runner.invoke(app, ["list", "--result", "god"])
     assert refused.exit_code == 2
     assert "did you mean 'good'?" in refused.output
