@@ -15,7 +15,7 @@ from cellctl.api.local_socket.messages import (
     Taken,
 )
 from cellctl.clock import now_s
-from cellctl.errors.local import DaemonNotReached
+from cellctl.errors.local import DaemonNotReached, StopNotDelivered
 from cellctl.hmi.access import OWN_PAGE, Asked, Visitor
 from cellctl.hmi.daemon_link import AnswerMissing
 from cellctl.hmi.problems import Problem
@@ -68,7 +68,8 @@ async def command(request: Request, body: CommandBody, key: Key, visitor: Asked)
     try:
         answer = await parts.link.ask(message)
     except DaemonNotReached as fault:
-        raise Problem(503, "daemon-away", str(fault), fault=fault.number).later(1) from fault
+        told = StopNotDelivered(fault.detail) if name in UNLIMITED else fault
+        raise Problem(503, "daemon-away", str(told), fault=told.number).later(1) from fault
     except AnswerMissing as missing:
         detail = "no answer: the cell may have taken the command, or not"
         raise Problem(504, "unknown", detail) from missing

@@ -12,6 +12,7 @@ from mcap.reader import make_reader
 from pydantic import BaseModel
 
 from cellctl.api.local_socket.messages import Answer, Failed, PlainCommand, Refused, StartCommand
+from cellctl.errors.local import StopNotDelivered
 from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.conftest import TOKEN
 from tests.unit.hmi.http_client import Client, Reply
@@ -100,7 +101,9 @@ def test_without_an_answer_nobody_knows(page: Client, paper: PaperDaemon, tmp_pa
     problem(reply, 504, "unknown")
     assert len(paper.asked) == 1
     (tmp_path / "s").unlink()
-    problem(page.command({"request": "abort"}), 503, "daemon-away")
+    away = page.command({"request": "abort"})
+    problem(away, 503, "daemon-away")
+    assert away.json["fault"] == StopNotDelivered.number
 
 
 def test_somebody_who_has_not_signed_in_may_abort_at_a_panel(
