@@ -23,6 +23,7 @@ _WHOLE_FILES = (
     "tests/unit/cli/",  # rendered images, fake cells that stand for all tests of a file
     "tests/unit/fakes/scenes/",
     "tests/unit/hmi/page/",  # one browser
+    "tests/unit/planning/views/",  # a measurement planned
     "tests/unit/processes/antenna_module/",  # rendered connectors, what was taught
     "tests/unit/processes/deck_to_frame/mating/test_mate.py",  # a mating
     "tests/unit/processes/deck_to_frame/test_shipped_calibration.py",
