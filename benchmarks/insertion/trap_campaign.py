@@ -8,6 +8,7 @@ is not, by either, or was pushed with more than the insertion may push with.
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
+from math import isnan, nan
 from typing import Any
 
 from rich.console import Console
@@ -46,8 +47,10 @@ def _written(_: Job, trap: ContactTrap) -> Mapping[str, Any]:
 
 
 def _read(record: Mapping[str, Any]) -> tuple[Job, ContactTrap]:
+    """Lines that have no force were made before it was judged: it is unknown then."""
     state = TrapState(record["state"])
-    return (state, int(record["seed"])), ContactTrap(**{**record, "state": state, "curve": ""})
+    known = {"force_n": nan, "limit_n": nan, **record}
+    return (state, int(record["seed"])), ContactTrap(**{**known, "state": state, "curve": ""})
 
 
 LINE = Line(_written, _read)
@@ -70,10 +73,15 @@ def table(traps: Sequence[ContactTrap]) -> Table:
             str(len(some)),
             f"{inserted} (at most {100 * high:.1f} %)",
             str(sum(trap.by_curve == "inserted" for trap in some)),
-            f"{max(trap.force_n for trap in some):.1f}",
+            _greatest(some),
             ", ".join(faults),
         )
     return shown
+
+
+def _greatest(traps: Sequence[ContactTrap]) -> str:
+    known = [trap.force_n for trap in traps if not isnan(trap.force_n)]
+    return f"{max(known):.1f} ({len(known)})" if known else "–"
 
 
 if __name__ == "__main__":
