@@ -3,6 +3,7 @@
 A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the study of insertion by touch.
 """
 
+from collections import deque
 from dataclasses import dataclass
 
 from cellctl.cell.contact_motion.motions import (
@@ -18,6 +19,7 @@ from cellctl.processes.peg_in_hole.faults import (
     HoleBlocked,
     NotSeated,
     PegJammed,
+    PegNotInserted,
     PegWedged,
 )
 from cellctl.processes.peg_in_hole.insertion.felt import (
@@ -39,6 +41,8 @@ _RECOVERY_S = 15.0
 """From the end of the first feed on."""
 _GAIN_M = 0.2e-3
 """Depth that a recovery has to win."""
+_IN_A_ROW = 3
+"""Samples: fewer are the noise of a force."""
 _SAME_DEPTH_M = 0.1e-3
 """Two feeds that end no farther apart than this have met the same thing."""
 
@@ -109,22 +113,36 @@ class _Feed:
         yields_m = limit_n / self._task.cell.stiffness_n_m
         target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
         watched, jump = ForceWithFeed(self._task.cell), ZeroJump(self._task)
+        past_seat: deque[bool] = deque(maxlen=_IN_A_ROW)
         ended_by: list[bool] = []
 
         def wrong(sample: ContactSample) -> bool:
-            # Both take every sample.
-            ended_by[:] = (watched.take(sample), jump.take(sample))
+            # Where nothing is felt beyond the seat, a sensor that is dead would let the arm press
+            # with all that its target lies beyond: a seat that is felt needs that way, no other.
+            past_seat.append(self._past_seat(Standing.of(sample)))
+            # Each takes every sample.
+            ended_by[:] = (watched.take(sample), jump.take(sample), sum(past_seat) == _IN_A_ROW)
             return any(ended_by)
 
         motion = await self._motions.feed(target_m, limit_n, wrong)
         self._samples += motion.samples
-        if motion.ended is Ended.CONDITION and not ended_by[0]:
-            raise ForceDropped(f"by {jump.dropped_n:.1f} N: {Standing.of(motion.last)}")
         if motion.ended is Ended.CONDITION:
-            raise ForceActsWithFeed(
-                f"{watched.greatest_n:.1f} N into the hole: {Standing.of(motion.last)}"
-            )
+            raise self._fault(Standing.of(motion.last), ended_by, watched, jump)
         return motion
+
+    @staticmethod
+    def _fault(
+        standing: Standing, ended_by: list[bool], watched: ForceWithFeed, jump: ZeroJump
+    ) -> PegNotInserted:
+        with_feed, dropped, _ = ended_by
+        if with_feed:
+            return ForceActsWithFeed(f"{watched.greatest_n:.1f} N into the hole: {standing}")
+        if dropped:
+            return ForceDropped(f"by {jump.dropped_n:.1f} N: {standing}")
+        return NotSeated(f"nothing has stopped the feed at the seat: {standing}")
+
+    def _past_seat(self, standing: Standing) -> bool:
+        return self._unloaded_m(standing) > self._task.fit.depth_m + SEAT_TOLERANCE_M
 
     def short_of_seat(self, motion: ContactMotion) -> bool:
         """Whether a feed that a force has ended is not at the seat."""

@@ -116,6 +116,30 @@ class _Bottomless(Bore):
         return ContactMotion(Ended.TRAVEL, (self.felt(0.5),))
 
 
+class _Unfelt(Bore):
+    """Goes on in small steps as long as it is let, and feels the same all the way."""
+
+    async def feed(
+        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+    ) -> ContactMotion:
+        assert until is not None
+        samples = []
+        while self.position_m[2] < depth_m:
+            self.position_m[2] += 0.01e-3
+            samples.append(self.felt(0.5))
+            if until(samples[-1]):
+                return ContactMotion(Ended.CONDITION, tuple(samples))
+        return ContactMotion(Ended.TRAVEL, tuple(samples))
+
+
+def test_a_feed_that_feels_nothing_ends_no_farther_past_the_seat_than_it_may_lie() -> None:
+    # 1e6 N/m: with a sensor that is dead, 0.03 mm more are as many newtons.
+    bore = _Unfelt([], side_n=0)
+    with pytest.raises(NotSeated, match="nothing has stopped the feed at the seat"):
+        fed(bore)
+    assert float(bore.position_m[2]) <= 12.33e-3
+
+
 def test_a_feed_that_nothing_stops_has_found_no_seat() -> None:
     bore = _Bottomless([], side_n=0)
     with pytest.raises(NotSeated, match=r"nothing has stopped the feed: depth 12\.33 mm"):
