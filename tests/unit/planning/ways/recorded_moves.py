@@ -10,6 +10,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.planning.ways.polyline import polyline
 
 
 def motions(record: Path) -> list[dict[str, Any]]:
@@ -21,10 +22,11 @@ def motions(record: Path) -> list[dict[str, Any]]:
 def covers(scene: CellScene, move: StatedMove, command: dict[str, Any], tolerance_m: float) -> bool:
     """Whether the target is one of the move, or between its ends, to the tolerance of the parts."""
     if command["what"] == "move_joint":
-        ends = move.end.joints_rad
-        return move.kind is MoveKind.JOINT and bool(
-            np.abs(ends - np.array(command["joints_rad"])).max() < 1e-6
-        )
+        if move.kind is not MoveKind.JOINT:
+            return False
+        # A stated way is commanded point by point.
+        ends = polyline(scene.arms[move.robot], move)[1:]
+        return bool(np.abs(ends - np.array(command["joints_rad"])).max(axis=1).min() < 1e-6)
     if move.kind is not MoveKind.LINEAR:
         return False
     target_m = pose_from_xyzabc(command["base_T_flange_mm_deg"]).translation

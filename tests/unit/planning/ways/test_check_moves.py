@@ -14,6 +14,7 @@ from cellctl.errors.config import (
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways import check_moves
 from cellctl.planning.ways.check_moves import check_move, stated_moves
+from cellctl.planning.ways.plan_ways import with_ways
 from tests.unit.planning.deck_cell import deck_scene
 
 SCENE = deck_scene()
@@ -46,7 +47,8 @@ def test_heads_move_freely_past_the_main_arm_at_home() -> None:
 
 
 def test_a_deck_that_would_go_straight_through_the_heads_is_found() -> None:
-    checked = check_move(SCENE, stated("main", "home", "deck_measure"))
+    straight = with_ways(SCENE, [])
+    checked = check_move(straight, stated("main", "home", "deck_measure"))
     assert isinstance(checked.fault, ClearanceTooSmall)
     text = str(checked.fault)
     for part in (
