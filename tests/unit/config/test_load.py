@@ -173,6 +173,7 @@ def test_an_unreadable_file_says_where(tmp_path: Path, content: bytes | None) ->
         ("deck.scenario.toml", "the scenario of a fake cell"),
         ("antenna.scenario.toml", "the scenario of a fake cell"),
         ("insertion-pin.model.toml", "the model of a cell"),
+        ("insertion-connector.model.toml", "the model of a cell"),
     ],
 )
 def test_another_file_of_the_cell_is_named_as_what_it_is(name: str, said: str) -> None:

@@ -1,5 +1,7 @@
-"""The moves of a pin against the model of its cell, and against where its run sends the arm."""
+"""The moves of a pin and of a plug against the models of their cells, and against where a run sends
+the arm."""
 
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -9,13 +11,16 @@ import pytest
 from cellctl.config import load_cell
 from cellctl.config.model_file import model_path
 from cellctl.config.stated.moves import MoveKind, StatedMove
+from cellctl.errors.config import ClearanceTooSmall
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.planning.model.read import read_model
 from cellctl.planning.ways.check_moves import check_move, stated_moves
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 
-PIN = Path("config/insertion-pin.toml")
-SCENE = read_model(load_cell(PIN), model_path(PIN), PIN.parent)
+PIN, CONNECTOR = (Path(f"config/insertion-{name}.toml") for name in ("pin", "connector"))
+SCENE, CONNECTOR_SCENE = (
+    read_model(load_cell(file), model_path(file), file.parent) for file in (PIN, CONNECTOR)
+)
 MOVES = list(stated_moves(SCENE))
 RECIPE = cast(PegRecipe, SCENE.cell.recipes[0])
 
@@ -24,6 +29,19 @@ RECIPE = cast(PegRecipe, SCENE.cell.recipes[0])
 def test_every_move_of_the_shipped_cell_is_free(move: StatedMove) -> None:
     checked = check_move(SCENE, move)
     assert checked.fault is None, str(checked.fault)
+
+
+@pytest.mark.parametrize("move", list(stated_moves(CONNECTOR_SCENE)), ids=lambda move: move.name)
+def test_every_move_of_the_shipped_connector_cell_is_free(move: StatedMove) -> None:
+    checked = check_move(CONNECTOR_SCENE, move)
+    assert checked.fault is None, str(checked.fault)
+
+
+def test_the_plug_may_meet_the_socket_in_an_approach_only() -> None:
+    down = next(move for move in stated_moves(CONNECTOR_SCENE) if move.end.label == "seat")
+    checked = check_move(CONNECTOR_SCENE, replace(down, approach=False))
+    assert isinstance(checked.fault, ClearanceTooSmall)
+    assert "arm.plug and socket" in str(checked.fault)
 
 
 def tip_mm(place: str) -> np.ndarray:
