@@ -30,8 +30,8 @@ class Way(Protocol):
         ...
 
     def leads_out(self, share: Share) -> bool:
-        """Whether it begins in the share and leads out through the face that is the way out, all
-        the time towards that face."""
+        """Whether it begins in the share and leads out through the face that is the way out: always
+        towards that face until it is beyond it, and never back into the share."""
         ...
 
 
@@ -59,8 +59,14 @@ class FlangeWay:
             return False
         axis, upper = share.way_out
         before_face_m = share.box.to_face_m(self.points_m, axis, upper=upper)
-        # What is not a number fails both comparisons, as it must.
-        return bool(before_face_m[-1] < 0.0 and np.all(np.diff(before_face_m) <= WAVER_M))
+        beyond = np.flatnonzero(before_face_m < 0.0)
+        if not beyond.size:
+            return False
+        # Outside of its box no part of the arm reaches into the zone, so that it may then turn to
+        # any side, as a second move from there might. What is not a number fails either way.
+        first = beyond[0]
+        towards = np.all(np.diff(before_face_m[: first + 1]) <= WAVER_M)
+        return bool(towards and not share.box.meets(self.points_m[first:]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,6 +18,8 @@ _SIDES = ("-x", "+x", "-y", "+y", "-z", "+z")
 def way_out_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
     """A ``way_out`` behind which its arm rests nowhere, while it does behind another face.
 
+    Upwards is a way out of every box over which the arm may come: it goes home over the box.
+
     ``bad`` holds the paths of devices whose settings are wrong themselves.
     """
     resting = resting_poses(cell)
@@ -29,7 +31,8 @@ def way_out_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
             # Of a robot without a recipe nobody knows at which of its poses it rests.
             behind = _behind(robot, share, resting.get(name) or robot.poses_deg.keys())
             others = {side: poses[0] for side, poses in behind.items() if poses}
-            if share.way_out not in others and others:
+            upwards = share.way_out == "+z" and _may_rise_over(robot, share)
+            if share.way_out not in others and others and not upwards:
                 sides = " or ".join(f"'{side}'" for side in others)
                 pose = next(iter(others.values()))
                 allowed = (
@@ -37,6 +40,13 @@ def way_out_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
                     f"leaves; behind '{share.way_out}' lies none. Or the box is on the wrong side"
                 )
                 yield ConfigIssue(f"zones.{zone}.robots.{name}.way_out", share.way_out, allowed)
+
+
+def _may_rise_over(robot: RobotConfig, share: ZoneShare) -> bool:
+    """Whether the bounds of straight moves let the flange stand over the box."""
+    # Drivers name such settings alike (docs/writing-a-robot-driver.md).
+    highest_mm = robot.settings.get("workspace_max_mm")
+    return highest_mm is not None and share.max_mm[2] < highest_mm[2]
 
 
 def _behind(robot: RobotConfig, share: ZoneShare, poses: Set[str]) -> dict[str, list[str]]:

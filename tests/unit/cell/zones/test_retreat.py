@@ -130,6 +130,11 @@ def way(*points: tuple[float, float, float]) -> FlangeWay:
         (way((1.2, 0.0, 0.0), (1.2, 0.0, 1.5)), False),
         (way((1.8, 0.0, 0.0), (1.2, 0.9, 0.0), (0.9, 0.0, 0.0)), True),
         (way((1.2, 0.0, 0.0), (1.21, 0.0, 0.0), (0.9, 0.0, 0.0)), False),
+        # Beyond the face it may turn to any side, but not past the box back into it.
+        (way((1.2, 0.0, 0.0), (0.5, 0.0, 0.0), (0.9, 0.0, 0.0)), True),
+        (way((1.2, 0.0, 0.0), (0.5, 0.0, 0.0), (0.5, 5.0, 0.0), (1.5, 5.0, 0.0)), True),
+        (way((1.2, 0.0, 0.0), (0.5, 0.0, 0.0), (0.5, 5.0, 0.0), (1.5, 0.0, 0.0)), False),
+        (way((1.2, 0.0, 0.0), (0.5, 0.0, 0.0), (np.nan, 0.0, 0.0)), False),
         (way((1.2, 0.0, 0.0), (np.nan, 0.0, 0.0)), False),
         (FlangeWay(np.array([[1.2, 0.0, 0.0], [0.5, 0.0, 0.0]]), 0.1), False),
         (UnknownWay(np.array([1.2, 0.0, 0.0]), np.zeros(6), np.ones(6)), False),

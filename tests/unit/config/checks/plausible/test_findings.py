@@ -33,6 +33,14 @@ def test_folders_of_two_cells_may_differ_by_a_number(tmp_path: Path) -> None:
     assert "'cel-2-calibration'" in found.allowed
 
 
+def test_an_arm_may_rise_out_of_a_low_box_and_go_home_over_it(tmp_path: Path) -> None:
+    box = 'max_mm = [2400.0, 800.0, 1900.0], way_out = "-x"'
+    for top, keys in (("1500.0", []), ("1900.0", ["zones.beside_head_1.robots.aux_1.way_out"])):
+        upwards = box.replace("1900.0", top).replace("-x", "+z")
+        path = written(tmp_path / top, "deck.toml", box, upwards)
+        assert [one.key for one in problems_before_commissioning(path)] == keys
+
+
 def test_any_host_name_passes_that_does_not_resemble_localhost(tmp_path: Path) -> None:
     old = 'host = "127.0.0.1", port = 7101'
     for name in ("localhost", "head-1.cell.local", "lab-host-2", "camera"):
