@@ -184,6 +184,15 @@ class NoViewsStated(PlanningError):
     remedy = "Teach the poses of the cameras by hand. See docs/planning.md."
 
 
+class ZoneTooSmall(PlanningError):
+    """Two arms could meet while one of them is outside of its box of their zone."""
+
+    number = 133
+    text = "Zone does not keep two arms apart"
+    cause = "The box of one arm does not hold a place at which a body of the other could meet it."
+    remedy = "Widen the box to the place in the detail and 100 mm more, or keep the arm from there."
+
+
 class StudyUnavailable(ConfigError):
     """The trials of a study are not installed."""
 

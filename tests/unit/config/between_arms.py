@@ -22,7 +22,7 @@ BETWEEN_ARMS = (
     deck(_BOTH, _EXCHANGED, _MAIN_1, "or the zone is for another arm"),
     deck("[2700.0, -300.0, 2600.0]", "[2700.0, -600.0, 2600.0]", _MAIN_1, "y -5"),
     deck("[2700.0, -300.0, 2600.0]", "[2700.0, -300.0, 1600.0]", _MAIN_1, "the way home"),
-    deck("[800.0, 300.0, 300.0]", "[800.0, 600.0, 300.0]", _MAIN_2, "a box that holds x"),
+    deck("[800.0, 60.0, 300.0]", "[800.0, 600.0, 300.0]", _MAIN_2, "a box that holds x"),
     deck(
         "aux_1 = { min_mm = [1450.0, -800.0, 600.0]",
         "aux_1 = { min_mm = [1450.0, -800.0, 1060.0]",

@@ -97,7 +97,7 @@ PLACES = (
         "carries the deck",
     ),
     deck(
-        "[zones.beside_head_2.robots]\nmain = { min_mm = [800.0, 300.0",
+        "[zones.beside_head_2.robots]\nmain = { min_mm = [800.0, 60.0",
         "[zones.beside_head_2.robots]\nmain = { min_mm = [800.0, -300.0",
         "zones.beside_head_2.robots.main",
         "both must stand there at once",

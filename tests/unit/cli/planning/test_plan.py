@@ -7,6 +7,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.planning.app import app
 from cellctl.cli.planning.opening import open_scene
+from cellctl.config import load_cell
 from cellctl.errors.config import (
     ConfigUnreadable,
     HeadNotDescribed,
@@ -48,12 +49,32 @@ def test_a_cell_whose_processes_state_no_moves_is_not_free(tmp_path: Path) -> No
         run("check", "config/small.toml", "--model", str(model))
 
 
-@pytest.mark.long
-def test_check_names_the_moves_that_are_not_free() -> None:
+def test_the_shipped_deck_cell_passes_its_own_check() -> None:
     code, output = run("check", DECK)
+    assert code == 0, output
+    assert "moves are free" in output
+    assert "zones that keep arms apart wherever they could meet: 2" in output
+    assert "stand-ins, not measured: " in output
+
+
+def test_the_arms_of_both_shipped_deck_cells_go_the_same_ways() -> None:
+    one, other = (load_cell(Path(name)) for name in (DECK, "config/deck-jobs.toml"))
+    assert one.robots["main"].ways
+    for name, robot in one.robots.items():
+        assert robot.ways == other.robots[name].ways
+        assert robot.poses_deg == other.robots[name].poses_deg
+
+
+@pytest.mark.long
+def test_check_names_the_moves_that_are_not_free(tmp_path: Path) -> None:
+    text = Path(DECK).read_text(encoding="utf-8")
+    cell = tmp_path / "deck.toml"
+    cell.write_text(text.replace("[0.0, -90.0, 120.0,", "[0.0, -88.0, 90.0,"))
+    for folder in ("features", "demo-calibration"):
+        (tmp_path / folder).symlink_to((Path(DECK).parent / folder).resolve())
+    code, output = run("check", str(cell), "--model", "config/deck.model.toml")
     assert code == 1
     assert "main: home to deck_measure (joint): main.deck and aux_2.forearm" in output
-    assert "stand-ins, not measured: " in output
 
 
 @pytest.mark.long
