@@ -1,6 +1,5 @@
 """`cellctl check`: everything that is wrong with a cell file; with `--connect` its devices too."""
 
-import grp
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from rich.console import Console
 
-from cellctl.atomic_files import may_write
+from cellctl.cli.commissioning.hints import hints_of_this_pc
 from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
@@ -70,9 +69,8 @@ def check(
     answers = _asked(cell, cell_file, socket) if connect and cell is not None else []
     bad_moves = list(_bad_moves(console, cell_file, quiet=as_json)) if moves and not found else []
     if as_json:
-        hints = [] if cell is None else _hints_of_this_pc(cell, cell_file.parent)
         told = _as_json(cell_file, found, remarks, answers, bad_moves)
-        typer.echo(as_plain(told | {"hints": hints}))
+        typer.echo(as_plain(told | _of_good_file(cell, cell_file.parent)))
     elif answers:
         from cellctl.cli.connecting.connect import show
 
@@ -126,6 +124,15 @@ def _as_json(
     }
 
 
+def _of_good_file(cell: CellConfig | None, folder: Path) -> dict[str, Any]:
+    """What is said of a file without errors; empty lists of any other."""
+    return {
+        "hints": [] if cell is None else hints_of_this_pc(cell, folder),
+        "not_checked": [] if cell is None else list(_never_checked(cell)),
+        "not_checked_yet": [] if cell is None else _not_yet_checked(cell, folder),
+    }
+
+
 def _show_findings(console: Console, cell_file: Path, found: Sequence[ConfigIssue]) -> None:
     if not found:
         return
@@ -149,7 +156,8 @@ def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Ex
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
         console.print(f"  {key:32} {device.driver}")
-    _say_what_is_not_checked(console, cell)
+    for what in _never_checked(cell):
+        console.print(f"  {what}", style="yellow")
     _say_what_zones_hold(console, cell)
     _say_what_boxes_leave(console, cell, examined.needs)
     _say_how_sensors_lie(console, cell)
@@ -161,7 +169,8 @@ def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Ex
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
         console.print(f"  recipe {recipe.id:<25} {text}")
-    _say_what_is_not_yet_checked(console, cell, cell_file.parent)
+    for what in _not_yet_checked(cell, cell_file.parent):
+        console.print(f"  not checked yet: {what}", style="yellow")
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
     if examined.remarks:
@@ -181,27 +190,25 @@ def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
         yield ConfigIssue("(mark of the template)", FILL_IN, allowed, line=number)
 
 
-def _say_what_is_not_checked(console: Console, cell: CellConfig) -> None:
+def _never_checked(cell: CellConfig) -> Iterator[str]:
     """Robots whose joint moves nobody holds against the bounds of their flange."""
     for name, robot in cell.robots.items():
         driver, settings = robot_driver(robot)
         if not driver.checks_joint_ways(settings):
-            console.print(
-                f"  robots.{name}: joint moves are not checked against its workspace (the driver's "
-                "settings say nothing of its kinematics)",
-                style="yellow",
+            yield (
+                f"robots.{name}: joint moves are not checked against its workspace (the driver's "
+                "settings say nothing of its kinematics)"
             )
 
 
-def _say_what_is_not_yet_checked(console: Console, cell: CellConfig, folder: Path) -> None:
+def _not_yet_checked(cell: CellConfig, folder: Path) -> list[str]:
     """Each line once: recipes share cameras and boards."""
     lines = dict.fromkeys(
         what
         for recipe in cell.recipes
         for what in process_definition(recipe.process).not_yet_checked(cell, recipe, folder)
     )
-    for what in lines:
-        console.print(f"  not checked yet: {what}", style="yellow")
+    return list(lines)
 
 
 def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
@@ -237,36 +244,8 @@ def _say_how_sensors_lie(console: Console, cell: CellConfig) -> None:
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:
     """Hints, not errors: whoever checks a file is often neither the user nor on the PC that the
     daemon runs as and on."""
-    for hint in _hints_of_this_pc(cell, folder):
+    for hint in hints_of_this_pc(cell, folder):
         console.print(f"  {hint}", style="yellow")
-
-
-def _hints_of_this_pc(cell: CellConfig, folder: Path) -> list[str]:
-    folders = {"data_dir": Path(cell.data_dir), "calibration_dir": folder / cell.calibration_dir}
-    hints = [
-        f"{key} {path}: this user may not write it, the daemon's must"
-        for key, path in folders.items()
-        if not may_write(path)
-    ]
-    calibrations = folders["calibration_dir"]
-    if not any(calibrations.glob("*.json")):
-        there = "holds no calibration" if calibrations.is_dir() else "no such folder on this PC"
-        hints.append(
-            f"calibration_dir {calibrations}: {there}: right for a cell that is still to be "
-            "calibrated; what checks hold against calibrations was not checked"
-        )
-    group = cell.local_api.group
-    if group and not _is_group(group):
-        hints.append(f"local_api.group {group}: this PC has no such group, the cell's must")
-    return hints
-
-
-def _is_group(name: str) -> bool:
-    try:
-        grp.getgrnam(name)
-    except KeyError:
-        return False
-    return True
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:

@@ -19,12 +19,16 @@ class ConfigUnreadable(ConfigError):
 
 
 class ConfigInvalid(ConfigError):
-    """Keys or values of the cell file are not allowed."""
+    """Keys or values of the cell file, or of its model, are not allowed."""
 
     number = 102
     text = "Configuration is not valid"
     cause = "Unknown or missing keys, or values outside their range."
-    remedy = "Run `cellctl check FILE`: it lists every error with the allowed range."
+    remedy = (
+        "The detail names file and key. Of a cell file `cellctl check FILE` lists every error with "
+        "the allowed range; a model (`*.model.toml`) is described in docs/planning.md, and "
+        "`cellctl plan check` with the cell file reads it again."
+    )
 
 
 class UnknownDriver(ConfigError):

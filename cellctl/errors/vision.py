@@ -4,7 +4,7 @@ VisionError
 ├── CalibrationFileInvalid, FeatureFileInvalid, ImageFileInvalid     401 402 403  inputs
 ├── ImageSizeMismatch, ImageBlack, ImageSaturated, ImageBlurred      411–414      one image
 ├── CamerasSwapped, CameraUpsideDown                                 415 416      the pair
-├── HoleMissing, HoleAmbiguous, TooFewHoles                          421–423      features
+├── HoleMissing, HoleAmbiguous, TooFewHoles, DrawingMirrored         421–424      features
 ├── ResidualsTooLarge, HeadsMoved                                    431 433      the pose
 └── CameraFileInvalid                                                463          one camera
 """
@@ -131,6 +131,21 @@ class TooFewHoles(VisionError):
     text = "Too few holes for a pose"
     cause = "Holes were rejected, or those left lie on a line."
     remedy = "Look at the picture and at the residuals of the rejected holes."
+
+
+class DrawingMirrored(VisionError):
+    """The holes fit the drawing in a mirror only, or nothing says that they do not."""
+
+    number = 424
+    text = "The drawing is mirrored against the part"
+    cause = (
+        "It shows the part from its back, one of its axes has the wrong sign, or `outward_axis` "
+        "points into the part."
+    )
+    remedy = (
+        "Compare picture and drawing: give x of every hole the other sign where they are mirrored, "
+        "else correct `outward_axis`, or state it."
+    )
 
 
 class ResidualsTooLarge(VisionError):

@@ -12,7 +12,7 @@ from typing import Any, BinaryIO
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import RecordAltered
-from cellctl.records.database import ledger, reading, rows, schema, sealed
+from cellctl.records.database import ledger, reading, rows, schema, sealed, sealed_details
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.database.sessions import LOCK_WAIT_S, Database
 from cellctl.records.database.stored_records import LINE_SEQ, StoredRecords
@@ -65,7 +65,7 @@ class RunStore(StoredRecords):
                 if (data := self._unfinished.read(row.number)) is not None and has_messages(data):
                     kept = self.artefacts.put(data), len(data)
                     recording = rows.artefact(row.number, MOTION, MCAP_MEDIA_TYPE, *kept)
-                    rows.add_details(session, row, [recording], None)
+                    sealed_details.add_details(session, row, [recording], None)
                 rows.close(session, row, RunResult.INTERRUPTED, None, None)
             interrupted = [row.number for row in found]
         # Those of runs that were closed too: a daemon may die between storing and removing.
@@ -117,7 +117,7 @@ class RunStore(StoredRecords):
             phase = rows.open_phase(session, run)
             phase_id = None if phase is None else phase.id
             new = [rows.to_row(entry, run, phase_id) for entry in details]
-            written = rows.add_details(session, row, new, self._written.get(run))
+            written = sealed_details.add_details(session, row, new, self._written.get(run))
         self._written[run] = written
 
     def begin_phase(self, run: int, number: int, label: str) -> None:
@@ -129,7 +129,7 @@ class RunStore(StoredRecords):
             if before is not None:
                 before.ended = now
             new = schema.PhaseRow(run=run, number=number, label=label, began=now)
-            written = rows.add_details(session, row, [new], self._written.get(run))
+            written = sealed_details.add_details(session, row, [new], self._written.get(run))
         self._written[run] = written
 
     def add_artefact(self, run: int, name: str, data: bytes, media_type: str) -> str:
@@ -139,7 +139,7 @@ class RunStore(StoredRecords):
         with self._database.write() as session:
             row = rows.open_run(session, run)
             new = rows.artefact(run, name, media_type, sha256, len(data))
-            written = rows.add_details(session, row, [new], self._written.get(run))
+            written = sealed_details.add_details(session, row, [new], self._written.get(run))
         self._written[run] = written
         return sha256
 
@@ -170,7 +170,7 @@ class RunStore(StoredRecords):
         with self._database.write() as session:
             row = rows.open_run(session, run)
             written = self._written.get(run)
-            if written is not None and rows.altered(session, row, written):
+            if written is not None and sealed_details.altered(session, row, written):
                 altered = RecordAltered(f"run {run}")
                 if result is RunResult.GOOD:
                     result, fault_number, fault = RunResult.BAD, altered.number, str(altered)

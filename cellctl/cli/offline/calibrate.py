@@ -151,15 +151,20 @@ def transfer(
     places = {"head_1": result.base_T_c1.pose, "head_2": result.base_T_c2.pose}
     # c_T_base * base_T_head is c_T_head: the heads as a base_T_c in the file would have them.
     if_inverted = {name: data.c_T_base * data.c_T_base * place for name, place in places.items()}
-    missing = "give --cell" if cell is None else compare_heads(file, cell, places, if_inverted)
+    missing = (
+        "give --cell with the cell file of these heads, beside its model"
+        if cell is None
+        else compare_heads(file, cell, places, if_inverted)
+    )
     if missing is not None:
         if (failed := inverted_base(places, if_inverted)) is not None:
             result = replace(result, checks=(*result.checks, failed))
-        console_of_lines().print(
-            "note: nothing here has checked which head is which, nor beyond doubt that c_T_base is "
-            f"not its inverse, base_T_c: {missing}",
-            style="yellow",
+        # In the record too: whoever takes it later sees that nobody has looked.
+        unchecked = (
+            "nothing here has checked which head is which, nor beyond doubt that c_T_base is not "
+            f"its inverse, base_T_c: {missing}"
         )
+        result = replace(result, warnings=(*result.warnings, unchecked))
     finish(result, result.warnings, out, picture, lambda: transfer_picture(result))
 
 

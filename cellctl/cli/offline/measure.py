@@ -12,6 +12,7 @@ import typer
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.config import FileInvalid, OutputNotWritten
 from cellctl.errors.vision import (
+    DrawingMirrored,
     HoleAmbiguous,
     HoleMissing,
     ImageFileInvalid,
@@ -24,6 +25,7 @@ from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
 from cellctl.vision.diameters import other_diameters
 from cellctl.vision.features.feature_file import FeatureFile, read_features
 from cellctl.vision.features.hole import Hole
+from cellctl.vision.holes.mirrored import has_mirror_image, mirrored, require_seen_face
 from cellctl.vision.measure import measure_pair
 from cellctl.vision.measurement import Method, PairMeasurement
 from cellctl.vision.picture import annotate
@@ -77,19 +79,36 @@ def measure(  # noqa: PLR0917 - the options of the command
 def _measured(
     images: tuple[Image, Image], head: StereoHead, holes: tuple[Hole, ...], method: Method
 ) -> PairMeasurement:
-    """The holes of a pair; where they are not found, whether its images were exchanged."""
+    """The holes of a pair; where they are not found, whether its images were exchanged, or its
+    drawing is mirrored."""
     if np.array_equal(*images):
         raise ImageFileInvalid("left and right are the same image")
     try:
-        return measure_pair(*images, head, holes, method=method)
+        result = measure_pair(*images, head, holes, method=method)
     except VisionError as fault:
-        try:
-            measure_pair(images[1], images[0], head, holes, method=method)
-        except VisionError:
-            raise fault from None
-        raise ImageFileInvalid(
-            "left and right are exchanged: the other way round all holes are found"
-        ) from fault
+        if _are_found(images[::-1], head, holes, method):
+            raise ImageFileInvalid(
+                "left and right are exchanged: the other way round all holes are found"
+            ) from fault
+        if has_mirror_image(holes) and _are_found(images, head, mirrored(holes), method):
+            raise DrawingMirrored(
+                "all holes are found with x of the other sign, and as drawn they are not "
+                f"({fault.detail})"
+            ) from fault
+        raise
+    require_seen_face(holes, result.positions_m)
+    return result
+
+
+def _are_found(
+    images: tuple[Image, ...], head: StereoHead, holes: tuple[Hole, ...], method: Method
+) -> bool:
+    left, right = images
+    try:
+        measure_pair(left, right, head, holes, method=method)
+    except VisionError:
+        return False
+    return True
 
 
 def _require_drawn_diameters(

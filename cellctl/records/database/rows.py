@@ -23,8 +23,7 @@ from cellctl.records.database.schema import (
     PoseRow,
     RunRow,
 )
-from cellctl.records.database.sealed import OPENING, PROGRESS, RUN
-from cellctl.records.database.written_details import WrittenDetails
+from cellctl.records.database.sealed import RUN
 from cellctl.records.entries import (
     Document,
     Figure,
@@ -119,32 +118,6 @@ def close(
     if phase is not None and result is not RunResult.INTERRUPTED:
         phase.ended = row.ended
     ledger.seal(session, RUN, row, row.ended)
-
-
-def altered(session: Session, row: RunRow, written: WrittenDetails) -> bool:
-    """Whether an open run is another one than was written."""
-    opened = ledger.is_as_sealed(session, OPENING, row.number)
-    return not opened or WrittenDetails.read(session, row.number) != written
-
-
-def add_details(
-    session: Session, row: RunRow, new: Sequence[Base], written: WrittenDetails | None
-) -> WrittenDetails | None:
-    """Add details to an open run and seal what is written of it by then, which is returned.
-
-    ``written`` is what was written before; None where an earlier owner has. What is there counts
-    then, unless it is not what that owner has sealed: the seal that shows it stays the newest, and
-    None is returned.
-    """
-    if written is None and row.record_schema >= 4:
-        intact = ledger.is_as_sealed(session, PROGRESS, row.number)
-        written = WrittenDetails.read(session, row.number) if intact else None
-    session.add_all(new)
-    if written is None or not new:
-        return written
-    written = written.and_then(session, new)
-    ledger.seal_written(session, row.number, written, utc_now())
-    return written
 
 
 def active_alarm_rows() -> Select[AlarmRow]:

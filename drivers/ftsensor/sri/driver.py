@@ -62,7 +62,10 @@ class SriSensor(FtSensor):
         return self._link.connection.fileno()
 
     def read(self, timeout_s: float) -> tuple[WrenchSample, ...]:
-        """Samples that have arrived. Raises ``SensorSetupWrong`` when another box answers."""
+        """Samples that have arrived.
+
+        Raises ``SensorSetupWrong`` when another box answers, or one that does not count its frames.
+        """
         if not self._opened:
             raise LinkLost(f"force sensor at {self._link.connection.peer} is not open")
         deadline_s = now_s() + timeout_s
@@ -131,6 +134,8 @@ class SriSensor(FtSensor):
             self._reconnects += self._opened
             self._opened = True
         samples = self._sampler.take(frames, now_s())
+        if (number := self._sampler.uncounted) is not None:
+            raise faults.not_counting(self._link.connection.peer, number)
         if (lag_s := self._sampler.clock.lag_s) > self._config.max_lag_s:
             # A new stream begins with what is taken now, and shows by its first frame whether it is
             # late too.

@@ -29,3 +29,13 @@ def late(peer: str, lag_s: float, allowed_s: float) -> StaleData:
 def wrong_setup(what: str, found: object, expected: object) -> SensorSetupWrong:
     """Fault of a setting that is not what the cell file says."""
     return SensorSetupWrong(f"{what} is {found}, expected {expected}")
+
+
+def not_counting(peer: str, number: int) -> SensorSetupWrong:
+    """Fault of a box whose frames all have one number: each but the first would pass for an old
+    one that was sent again, and the sensor for silent."""
+    return SensorSetupWrong(
+        f"package number of the force sensor at {peer} is {number} in every frame, expected one "
+        "more in each: frames that come anew cannot be told from repeated ones; see the box's "
+        "settings and firmware"
+    )

@@ -7,6 +7,8 @@ from drivers.ftsensor.sri.timing import SampleClock
 from drivers.ftsensor.sri.values import Conversion, engineering
 
 _NUMBERS = 0x10000
+_UNCOUNTED = 50
+"""Frames of one number at the beginning of a stream: no box repeats its first frame so often."""
 _RENUMBERED = _NUMBERS // 2
 """A step this large forward is a step back: the box has begun to count anew."""
 
@@ -25,11 +27,20 @@ class Sampler:
         self._sign = -1.0 if config.inverted else 1.0
         self._convert: Conversion = engineering
         self._last: int | None = None
+        self._repeats_of_first: int | None = 0
+        """Frames with the number of the first one; None from the first other number on."""
+
+    @property
+    def uncounted(self) -> int | None:
+        """The number that all frames of this stream have, once there are too many for a chance."""
+        repeats = self._repeats_of_first
+        return self._last if repeats is not None and repeats >= _UNCOUNTED else None
 
     def restart(self, convert: Conversion) -> None:
         """The next frame begins a stream; its number is the origin."""
         self._convert = convert
         self._last = None
+        self._repeats_of_first = 0
         self.clock.restart()
 
     def take(self, frames: list[Frame], receive_s: float) -> list[WrenchSample]:
@@ -44,7 +55,11 @@ class Sampler:
                 # would look like one of now.
                 self.invalid += 1
                 behind -= self._points
+                if self._repeats_of_first is not None:
+                    self._repeats_of_first += 1
                 continue
+            if self._last is not None:
+                self._repeats_of_first = None
             gap = self._gap(frame.number)
             self.lost += gap * self._points
             periods = gap * self._points + 1

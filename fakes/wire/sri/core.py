@@ -41,7 +41,8 @@ class SriCore:
         data = pack_counts(points) if chosen.unit == "C" else pack_floats(points)
         data = self._spoil(data, chosen)
         number = self.next_number
-        self.next_number = (number + 1) & 0xFFFF
+        if not self.faults.uncounted:
+            self.next_number = (number + 1) & 0xFFFF
         return build_frame(number, data, self.settings.check)
 
     def point(self, time_s: float, data_format: DataFormat) -> Vector:

@@ -29,6 +29,8 @@ class SriFaults:
     """No frames, although commands are answered."""
     frozen: bool = False
     """The values stop changing; numbers go on."""
+    uncounted: bool = False
+    """Every frame has the package number of the last one before; the values go on."""
     jump_every: int = 0
     """Half the scale is added to all channels of that point, as a loose contact does."""
     saturated: bool = False

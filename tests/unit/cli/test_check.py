@@ -127,3 +127,17 @@ def test_every_move_is_held_against_the_model_beside_the_file(tmp_path: Path) ->
     assert any(
         "arm.gripper and part" in text or "arm.pin and part" in text for text in found["moves"]
     )
+
+
+def test_programs_are_told_what_was_not_checked(tmp_path: Path) -> None:
+    """The same lines as on the terminal; none of a file with errors."""
+    (tmp_path / "empty").mkdir()
+    old, new = (f'calibration_dir = "{name}"' for name in ("antenna-calibration", "empty"))
+    cell_file = written(tmp_path, "antenna.toml", old, new)
+    shown = CliRunner().invoke(whole_app(), ["check", str(cell_file)]).stdout
+    told = json.loads(CliRunner().invoke(whole_app(), ["check", str(cell_file), "--json"]).stdout)
+    mark = "  not checked yet: "
+    lines = [line.removeprefix(mark) for line in shown.splitlines() if line.startswith(mark)]
+    assert lines
+    assert told["not_checked_yet"] == lines
+    assert told["not_checked"] == []

@@ -167,6 +167,26 @@ async def test_nan_is_no_sample(box: SriBox) -> None:
     await closed(sensor)
 
 
+async def test_a_box_that_does_not_count_its_frames_is_named(box: SriBox) -> None:
+    """Each frame would pass for the one before, and the sensor for a silent one."""
+    box.faults.inject("uncounted")
+    sensor = await opened(await tcp_sensor(box))
+    with pytest.raises(SensorSetupWrong, match=r"package number of .* in every frame"):
+        await read_until(sensor, lambda: False)
+    await closed(sensor)
+
+
+async def test_frames_that_are_repeated_later_are_no_fault_of_the_setup(box: SriBox) -> None:
+    sensor = await opened(await tcp_sensor(box))
+    await some(sensor)
+    before = sensor.health()
+    box.faults.inject("uncounted")
+    await read_until(sensor, lambda: sensor.health().invalid >= before.invalid + 100)
+    box.faults.clear()
+    await some(sensor)
+    await closed(sensor)
+
+
 async def test_saturation_needs_the_range(box: SriBox) -> None:
     sensor = await opened(await tcp_sensor(box, range=(5000.0,) * 3 + (500.0,) * 3))
     box.faults.inject("saturated")

@@ -9,7 +9,7 @@ import typer
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.config import FileInvalid
 from cellctl.errors.vision import VisionError
-from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.connector.connector import Connector, read_connector
 from cellctl.processes.antenna_module.connector.marks import read_marks
 from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
@@ -20,6 +20,7 @@ from cellctl.processes.antenna_module.faults.connector import (
     MarksMissing,
     PaperMethodRefused,
 )
+from cellctl.processes.antenna_module.vision.matching import looks_alike_in_mirror
 from cellctl.processes.antenna_module.vision.measure import measure_connector
 from cellctl.processes.antenna_module.vision.measurement import (
     ConnectorMeasurement,
@@ -75,7 +76,8 @@ def measure(  # noqa: PLR0917 - the options of the command
             result = measure_by_paper(seen, *files)
         else:
             result = measure_connector(seen.plane, *files, drawing)
-        _write(result, seen, out, picture)
+        unseen = _not_seen(files[2])
+        _write(result, (*seen.warnings, *unseen), seen, out, picture)
         require_sound(result, tolerated=tolerate)
     except (
         ConnectorMissing,
@@ -93,11 +95,25 @@ def measure(  # noqa: PLR0917 - the options of the command
         raise typer.Exit(EXIT_REFUSED) from fault
 
 
+def _not_seen(connector: Connector) -> tuple[str, ...]:
+    """What a mistake in the drawing would leave as it is in every picture."""
+    if not looks_alike_in_mirror(connector.positions_m, connector.diameter_m / 2.0):
+        return ()
+    return (
+        "the contacts look the same in a mirror: no picture shows whether their names run the "
+        "right way round; `cellctl check` holds plug and socket of a recipe against each other",
+    )
+
+
 def _write(
-    result: ConnectorMeasurement, seen: MeasuredPixels, out: Path | None, picture: Path | None
+    result: ConnectorMeasurement,
+    warnings: tuple[str, ...],
+    seen: MeasuredPixels,
+    out: Path | None,
+    picture: Path | None,
 ) -> None:
     data = result_to_json(result)
-    data["warnings"] += list(seen.warnings)
+    data["warnings"] += list(warnings)
     for words in data["warnings"]:
         typer.echo(f"warning: {words}", err=True)
     text = json.dumps(data, indent=2) + "\n"

@@ -33,7 +33,7 @@ from cellctl.processes.antenna_module.commands.trial_file import (
 from cellctl.processes.antenna_module.commands.turn_file import TurnFile
 from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
-from cellctl.processes.antenna_module.insertion.curve import parse_curve
+from cellctl.processes.antenna_module.insertion.curve import parse_curve, require_possible_units
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 
 T = TypeVar("T")
@@ -100,7 +100,12 @@ def judge_by_connector(curve: Path, connector: Path) -> JudgedInsertion:
         text = curve.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise InsertionCurveInvalid(f"{curve}: {error}") from error
-    judgement = judge_insertion(parse_curve(text), read_connector(connector))
+    read, drawing = parse_curve(text), read_connector(connector)
+    try:
+        require_possible_units(read, drawing.seat_depth_m, drawing.force_n[1])
+    except InsertionCurveInvalid as fault:
+        raise InsertionCurveInvalid(f"{curve}: {fault.detail}") from fault
+    judgement = judge_insertion(read, drawing)
     return JudgedInsertion(
         judgement.verdict.value,
         judgement.verdict is InsertionVerdict.SEATED,

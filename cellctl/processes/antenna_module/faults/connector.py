@@ -111,12 +111,18 @@ class ConnectorTurned(ConnectorError):
 
 
 class ImageMirrored(ConnectorError):
-    """The image shows a mirror image."""
+    """The image shows a mirror image of the drawing."""
 
     number = 470
-    text = "Image is mirrored"
-    cause = "A mirror setting of the camera, or a program that saved the image flipped."
-    remedy = "Restore the camera's settings that it was calibrated with."
+    text = "Image or drawing is mirrored"
+    cause = (
+        "A mirror setting of the camera, a program that saved the image flipped, or a drawing of "
+        "the part as seen from its back."
+    )
+    remedy = (
+        "Restore the camera's settings that it was calibrated with; in the drawing, give x of "
+        "every place the other sign."
+    )
 
 
 class ConnectorMisplaced(ConnectorError):

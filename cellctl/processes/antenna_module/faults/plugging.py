@@ -150,8 +150,11 @@ class InsertionCurveInvalid(PluggingError):
 
     number = 575
     text = "Insertion curve cannot be judged"
-    cause = "Missing columns, text where numbers belong, time that runs back, or too few samples."
-    remedy = "See the line in the detail; the columns are in docs/plugging.md."
+    cause = (
+        "Missing columns, text where numbers belong, time that runs back, too few samples, or "
+        "numbers that no insertion can have in their unit."
+    )
+    remedy = "See the line or column in the detail; the columns are in docs/plugging.md."
 
 
 class ModuleMissing(PluggingError):

@@ -7,10 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cellctl.force.contact.recorded_units import (
+    impossible_depths,
+    impossible_forces,
+    impossible_sampling,
+    impossible_speed,
+)
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 
 COLUMNS = ("t_s", "z_mm", "fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
+_TIME, _DEPTH, _FORCES = COLUMNS[0], COLUMNS[1], COLUMNS[2:5]
 _FEWEST = 20
 
 
@@ -91,6 +98,21 @@ def parse_curve(text: str) -> InsertionCurve:
     if back.size:
         raise InsertionCurveInvalid(f"sample {back[0] + 2}: time does not rise")
     return InsertionCurve(table[:, 0], table[:, 1] * MM, table[:, 2:5], table[:, 5:8])
+
+
+def require_possible_units(curve: InsertionCurve, seat_m: float, most_n: float) -> None:
+    """Raise ``InsertionCurveInvalid`` for numbers that no plugging can have in these units.
+
+    ``seat_m`` is the depth of the seat, ``most_n`` the greatest axial force of a good plugging.
+    """
+    for why in (
+        impossible_sampling(curve.t_s, _TIME),
+        impossible_depths(curve.depth_m, seat_m, _DEPTH),
+        impossible_speed(curve.t_s, curve.depth_m, _TIME),
+        impossible_forces(curve.force_n, most_n, _FORCES),
+    ):
+        if why is not None:
+            raise InsertionCurveInvalid(why)
 
 
 def curve_text(curve: InsertionCurve) -> str:

@@ -5,14 +5,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import MM, Array
+from cellctl.processes.antenna_module.connector.arrangement import MIRROR
 from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMisplaced,
     ConnectorTurned,
     ImageMirrored,
 )
-from cellctl.processes.antenna_module.vision.matching import Placement
-from cellctl.processes.antenna_module.vision.pattern import Candidates
+from cellctl.processes.antenna_module.vision.matching import Placement, placements
+from cellctl.processes.antenna_module.vision.pattern import Candidates, Pattern
+
+_NO_NOISE, _CLEARLY = 3.0, 3.0
+"""Misfit over the standard deviation of good features, and over that in a mirror, from which on a
+drawing is not the one that is seen."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,8 +56,8 @@ def choose(
     """
     best = candidates.placements[0] if candidates.placements else None
     seen = candidates.mirrored[0].found if candidates.mirrored else 0
-    if chiral and seen > (0 if best is None else best.found):
-        raise ImageMirrored(f"{seen} features fit the drawing in a mirror only")
+    if chiral and candidates.mirrored and seen > (0 if best is None else best.found):
+        raise _mirrored(candidates.mirrored[0], best)
     if best is None:
         raise ConnectorAmbiguous("no placement")
     equal = [item for item in candidates.placements if item.found == best.found]
@@ -78,10 +83,42 @@ def choose(
     )
 
 
-def _ways(placements: list[Placement], best: Placement) -> str:
+def refuse_mirrored(pattern: Pattern, candidates: Candidates, least: int) -> None:
+    """Raise ``ImageMirrored`` where the spots fit the pattern clearly better in a mirror.
+
+    For a pattern that nobody has proved to differ from its mirror image: one that looks the same
+    there fits the spots as well in either form, and never better.
+    """
+    best = candidates.placements[0] if candidates.placements else None
+    off_m = _NO_NOISE * pattern.true_position_m
+    if best is not None and best.found == len(pattern.names) and best.misfit_m <= off_m:
+        return
+    if len(candidates.spots_m) < least:
+        return
+    in_mirror = placements(
+        pattern.positions_m @ MIRROR, candidates.spots_m, least=least, reach_m=pattern.reach_m
+    )
+    if not in_mirror:
+        return
+    seen = in_mirror[0]
+    if best is None or seen.found > best.found:
+        raise _mirrored(seen, best)
+    if seen.found == best.found and best.misfit_m > max(off_m, _CLEARLY * seen.misfit_m):
+        raise _mirrored(seen, best)
+
+
+def _mirrored(seen: Placement, best: Placement | None) -> ImageMirrored:
+    drawn = "none" if best is None else f"{best.found} to {best.misfit_m / MM:.3f} mm"
+    return ImageMirrored(
+        f"{seen.found} of {len(seen.spot)} features fit the drawing in a mirror to "
+        f"{seen.misfit_m / MM:.3f} mm, as drawn {drawn}"
+    )
+
+
+def _ways(equal: list[Placement], best: Placement) -> str:
     turns = ", ".join(
         f"{np.degrees(item.yaw_rad):.1f}° at "
         f"{item.shift_m[0] / MM:.2f}, {item.shift_m[1] / MM:.2f} mm"
-        for item in placements
+        for item in equal
     )
     return f"{best.found} features fit at {turns}"

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellctl.geometry.pose import Array
+from cellctl.processes.antenna_module.connector.arrangement import MIRROR
 
 _PAIRS = 6
 _MOST_STARTS = 200
@@ -49,6 +50,13 @@ def placements(drawing_m: Array, spots_m: Array, *, least: int, reach_m: float) 
         if not any(_same(placement, other, drawing_m, reach_m) for other in found):
             found.append(placement)
     return sorted(found, key=lambda item: (-item.found, item.misfit_m))
+
+
+def looks_alike_in_mirror(drawing_m: Array, reach_m: float) -> bool:
+    """Whether a drawing, shape (n, 2), lies on its own mirror image, each contact on another one or
+    itself to within ``reach_m``. No picture shows then whether its names run the right way."""
+    in_mirror = drawing_m @ MIRROR
+    return bool(placements(in_mirror, drawing_m, least=len(drawing_m), reach_m=reach_m))
 
 
 def rotation(yaw_rad: float) -> Array:

@@ -18,8 +18,13 @@ from cellctl.processes.antenna_module.faults.connector import (
     PlaneScaleWrong,
     WrongConnector,
 )
-from cellctl.processes.antenna_module.vision.choice import PlanarExpectation, choose
+from cellctl.processes.antenna_module.vision.choice import (
+    PlanarExpectation,
+    choose,
+    refuse_mirrored,
+)
 from cellctl.processes.antenna_module.vision.contact_states import contact_states
+from cellctl.processes.antenna_module.vision.matching import looks_alike_in_mirror
 from cellctl.processes.antenna_module.vision.measurement import (
     ConnectorMeasurement,
     MeasuredMarks,
@@ -82,6 +87,7 @@ def measure_connector(
     pattern = contact_pattern(connector)
     least = int(np.ceil(_LEAST_SHARE * len(pattern.names)))
     candidates = find_pattern(image, rim_plane, pattern, least=least)
+    refuse_mirrored(pattern, candidates, least)
     _require_connector(image, rim_plane, pattern, candidates, least)
     if connector.symmetric and expected is None:
         raise ConnectorAmbiguous("the drawing looks the same after half a turn")
@@ -114,7 +120,7 @@ def measure_connector(
         chi2=found.fit.chi2,
         freedom=found.fit.freedom,
         marks=seen_marks,
-        warnings=_warnings(expected),
+        warnings=_warnings(connector, expected),
     )
 
 
@@ -282,7 +288,8 @@ def require_certain(fit: PlanarFit) -> None:
         )
 
 
-def _warnings(expected: PlanarExpectation | None) -> tuple[str, ...]:
-    if expected is not None:
+def _warnings(connector: Connector, expected: PlanarExpectation | None) -> tuple[str, ...]:
+    drawn_m, reach_m = connector.positions_m, connector.diameter_m / 2.0
+    if expected is not None or not looks_alike_in_mirror(drawn_m, reach_m):
         return ()
     return ("neither marks nor an expected place: a mirrored image would not be noticed",)

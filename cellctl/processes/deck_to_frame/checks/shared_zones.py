@@ -7,6 +7,7 @@ abort as well, and a head that was left at its measuring pose stands in the way.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -104,27 +105,45 @@ def _within(share: ZoneShare) -> ZoneShare:
 
 
 def unlike_box_remarks(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
-    """Boxes that differ although their heads measure from one place, each in its arm's own base."""
+    """Boxes that differ although their heads measure from one place, each in its arm's own base.
+
+    A box is compared with that one of each arm before it which is most like it: an arm may have
+    several, and one head may have none.
+    """
     main = recipe.device(MAIN)
-    carriers = [cell.stereo_cameras[recipe.device(role)].carried_by for role in (HEAD_1, HEAD_2)]
-    shares = {
-        carrier: (f"zones.{name}.robots.{carrier}", zone.robots[carrier])
-        for carrier in carriers
-        for name, zone in cell.zones.items()
-        if carrier is not None and {main, carrier} <= zone.robots.keys()
-    }
-    places_m = [place_m for name in shares if (place_m := _measuring_m(cell, name)) is not None]
-    if len(places_m) < len(carriers):
-        return
-    (one, first), (other, second) = shares.values()
-    apart_m = np.linalg.norm(places_m[0] - places_m[1])
-    differ_mm = np.abs(np.subtract(_corners(first), _corners(second)))
-    if apart_m < _ROOM_MM * MM < np.max(differ_mm) * MM:
-        said = (
-            f"differs by {np.max(differ_mm):.0f} mm from {one}, whose head measures from the same "
-            "place in the base of its arm: right if other things stand around it"
-        )
-        yield ConfigIssue(other, f"{list(second.min_mm)} to {list(second.max_mm)}", said)
+    shares: dict[str, dict[str, ZoneShare]] = {}
+    for role in (HEAD_1, HEAD_2):
+        carrier = cell.stereo_cameras[recipe.device(role)].carried_by
+        if carrier is not None:
+            shares[carrier] = {
+                f"zones.{name}.robots.{carrier}": zone.robots[carrier]
+                for name, zone in cell.zones.items()
+                if {main, carrier} <= zone.robots.keys()
+            }
+    for one, other in combinations((arm for arm in shares if shares[arm]), 2):
+        places_m = _measuring_m(cell, one), _measuring_m(cell, other)
+        if places_m[0] is None or places_m[1] is None:
+            continue
+        if np.linalg.norm(places_m[0] - places_m[1]) < _ROOM_MM * MM:
+            yield from _unlike(shares[one], shares[other])
+
+
+def _unlike(
+    first: Mapping[str, ZoneShare], second: Mapping[str, ZoneShare]
+) -> Iterator[ConfigIssue]:
+    for key, share in second.items():
+        differ_mm = {name: _differ_mm(one, share) for name, one in first.items()}
+        like = min(differ_mm, key=lambda name: differ_mm[name])
+        if differ_mm[like] > _ROOM_MM:
+            said = (
+                f"differs by {differ_mm[like]:.0f} mm from {like}, whose head measures from the "
+                "same place in the base of its arm: right if other things stand around it"
+            )
+            yield ConfigIssue(key, f"{list(share.min_mm)} to {list(share.max_mm)}", said)
+
+
+def _differ_mm(one: ZoneShare, other: ZoneShare) -> float:
+    return float(np.max(np.abs(np.subtract(_corners(one), _corners(other)))))
 
 
 def _corners(share: ZoneShare) -> tuple[float, ...]:

@@ -5,6 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from cellctl.cell.contact_motion.motions import Ended
+from cellctl.force.contact.recorded_units import (
+    impossible_depths,
+    impossible_forces,
+    impossible_speed,
+)
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
 from cellctl.processes.peg_in_hole.insertion.felt import (
@@ -16,6 +21,7 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
 from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.insertion.with_feed import LEAST_SIGN_N, with_feed_n
 from cellctl.processes.peg_in_hole.insertion.zero_jump import dropped_n
+from cellctl.processes.peg_in_hole.offline.columns import DEPTH, FORCES, TIME
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
 from cellctl.processes.peg_in_hole.offline.split import CurveParts, by_motions
@@ -24,13 +30,10 @@ from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, La
 from cellctl.processes.peg_in_hole.verdict.holding import MET_N_M
 from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, capture_of
 
-_TOO_DEEP = 3.0
-"""Times the depth of the hole: no hole is so much deeper than its drawing, but a unit may be."""
-
 
 def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
     """Raises ``PegCurveInvalid`` for signs or units that contradict what was done."""
-    _require_depths(curve, task)
+    _require_possible_units(curve, task)
     parts = _split(curve, task)
     _require_signs(curve, parts, task)
     end = Standing.of(parts.feed[-1])
@@ -77,14 +80,20 @@ def _held_pull_n(parts: CurveParts) -> float | None:
     return max(float(sample.force_n[2]) for sample in parts.pulled)
 
 
-def _require_depths(curve: PegCurve, task: TaskOfCurve) -> None:
+def _require_possible_units(curve: PegCurve, task: TaskOfCurve) -> None:
     depth_m = np.array([sample.task_position_tip_m[2] for sample in curve.samples])
     deepest_m, highest_m = float(depth_m.max()), float(depth_m.min())
     hole_m = task.fit.depth_m
-    if deepest_m > _TOO_DEEP * hole_m:
-        raise PegCurveInvalid(
-            f"reaches {deepest_m * 1e3:.4g} mm in a hole of {hole_m * 1e3:.4g} mm: another unit?"
-        )
+    time_s = np.array([sample.time_s for sample in curve.samples])
+    force_n = np.array([sample.force_n for sample in curve.samples])
+    forces = [curve.columns.get(name, name) for name in FORCES]
+    for why in (
+        impossible_depths(depth_m, hole_m, curve.columns.get(DEPTH, DEPTH)),
+        impossible_speed(time_s, depth_m, curve.columns.get(TIME, TIME)),
+        impossible_forces(force_n, task.seat.most_n, forces),
+    ):
+        if why is not None:
+            raise PegCurveInvalid(why)
     if (
         deepest_m < 0.1 * hole_m
         and highest_m < -0.5 * hole_m
@@ -129,4 +138,4 @@ def _met(parts: CurveParts, axis: int) -> int:
 def _sides_turned_round(curve: PegCurve) -> PegCurve:
     turn = np.array([-1.0, -1.0, 1.0])
     samples = tuple(replace(one, force_n=turn * one.force_n) for one in curve.samples)
-    return PegCurve(samples, curve.motions)
+    return PegCurve(samples, curve.motions, curve.columns)

@@ -264,6 +264,14 @@ def test_transfer(tmp_path: Path) -> None:
     assert "C1_T_C2: X" in result.output
 
 
+def test_what_a_transfer_without_the_cell_file_has_not_checked_is_kept(tmp_path: Path) -> None:
+    out = tmp_path / "result.json"
+    result = call("transfer", "--in", save(tmp_path / "t.json", transfer_data()), "--out", out)
+    assert "warning: nothing here has checked which head is which" in result.output
+    (kept,) = json.loads(out.read_text())["warnings"]
+    assert "give --cell with the cell file of these heads" in kept
+
+
 def test_tables_of_a_transfer_that_were_exchanged_or_copied_are_named(tmp_path: Path) -> None:
     data = transfer_data()
     (one,) = data["head_1"]

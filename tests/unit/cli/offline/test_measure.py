@@ -1,4 +1,5 @@
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -138,3 +139,42 @@ def test_one_image_for_both_cameras_is_named(folder: Path) -> None:
     result = run(folder, right="left.png")
     assert result.exit_code == 1
     assert "the same image" in result.output
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("outward", ["", "outward_axis = [0.0, 0.0, 1.0]\n"])
+def test_a_mirrored_drawing_is_named(folder: Path, sign: float, outward: str) -> None:
+    """Holes in a plane fit their mirror image as seen from the back, with the same residuals."""
+
+    def changed(found: re.Match[str]) -> str:
+        return f"position_mm = [{sign * float(found[1])},"
+
+    text = re.sub(r"position_mm = \[(-?[\d.]+),", changed, (folder / "plate.toml").read_text())
+    (folder / "other.toml").write_text(outward + text)
+    result = run(folder, features="other.toml")
+    if sign > 0:
+        assert result.exit_code == 0, result.output
+        return
+    assert result.exit_code == 1
+    assert "F424 The drawing is mirrored" in result.stderr
+    assert "x" in result.stderr
+    assert result.stdout == ""
+
+
+def test_z_into_the_part_has_to_be_stated(folder: Path) -> None:
+    text = (folder / "plate.toml").read_text()
+    for y in (-16.7, 83.3, -66.7):
+        assert f", {y}, 0.0]" in text
+        text = text.replace(f", {y}, 0.0]", f", {-y}, 0.0]")
+    (folder / "down.toml").write_text(text)
+    assert "outward_axis = [0.0, 0.0, -1.0]" in run(folder, features="down.toml").stderr
+    (folder / "down.toml").write_text("outward_axis = [0.0, 0.0, -1.0]\n" + text)
+    assert run(folder, features="down.toml").exit_code == 0
+
+
+def test_an_outward_axis_into_the_part_is_named(folder: Path) -> None:
+    text = (folder / "plate.toml").read_text()
+    (folder / "inward.toml").write_text("outward_axis = [0.0, 0.0, -1.0]\n" + text)
+    result = run(folder, features="inward.toml")
+    assert "F424" in result.stderr
+    assert "correct `outward_axis`" in result.stderr

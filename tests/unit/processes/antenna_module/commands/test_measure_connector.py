@@ -1,6 +1,7 @@
 """``cellctl measure-connector`` as a user runs it."""
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -99,6 +100,41 @@ def test_the_file_of_another_connector_is_refused(tmp_path: Path) -> None:
     done = run(tmp_path, "--connector", "config/connectors/d-sub-15-pins.toml")
     assert done.exit_code == 1
     assert "F468 Contacts do not fit the connector file" in done.stderr
+
+
+def drawn(folder: Path, sign: float, *, without: str = "") -> Path:
+    """The drawing with x times ``sign``, and without one of its contacts."""
+    data = tomllib.loads(CONNECTOR.read_text())
+    lines = [f"{key} = {json.dumps(one)}" for key, one in data.items() if key != "contact"]
+    for contact in data["contact"]:
+        if contact["name"] != without:
+            x, y = contact["position_mm"]
+            lines += ["[[contact]]", f'name = "{contact["name"]}"']
+            lines += [f"position_mm = [{sign * x}, {y}]"]
+    path = folder / "drawn.toml"
+    path.write_text("\n".join(lines))
+    return path
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_mirrored_drawing_of_a_keyed_plug_is_named(tmp_path: Path, sign: float) -> None:
+    """Without contact 3 the plug differs from its mirror image, in which it has no contact 6."""
+    picture(missing=("3",)).write(tmp_path)
+    done = run(tmp_path, "--connector", str(drawn(tmp_path, sign, without="3")))
+    if sign > 0:
+        assert done.exit_code == 0, done.output
+        assert "mirror" not in done.stderr
+    else:
+        assert done.exit_code == 1
+        assert "F470 Image or drawing is mirrored: 14 of 14 features" in done.stderr
+
+
+def test_a_mirrored_drawing_that_no_picture_shows_is_told_of(tmp_path: Path) -> None:
+    picture().write(tmp_path)
+    done = run(tmp_path, "--connector", str(drawn(tmp_path, -1.0)))
+    assert done.exit_code == 0
+    assert "the contacts look the same in a mirror" in done.stderr
+    assert any("look the same in a mirror" in words for words in result(tmp_path)["warnings"])
 
 
 def test_exchanged_intrinsics_are_refused(tmp_path: Path) -> None:

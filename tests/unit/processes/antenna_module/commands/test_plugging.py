@@ -278,6 +278,34 @@ def test_an_insertion_is_judged_from_a_file(
     assert json.loads(out.read_text())["verdict"] == verdict
 
 
+@pytest.mark.parametrize(
+    ("column", "factor", "said"),
+    [
+        ("t_s", 1e3, "t_s: 4 s between samples"),
+        ("t_s", 50.0, "t_s: by it the part went in at 0.008 mm/s"),
+        ("t_s", 1e-3, "t_s: 4e-06 s between samples"),
+        ("z_mm", 1e-3, "z_mm stays within 0.002"),
+        ("z_mm", 1e3, "z_mm reaches 25"),
+        ("f", 1e-3, "fx_n, fy_n, fz_n: at most 0.0"),
+        ("f", 1e3, "fx_n, fy_n, fz_n: up to"),
+    ],
+)
+def test_numbers_in_another_unit_are_refused_with_their_column(
+    tmp_path: Path, column: str, factor: float, said: str
+) -> None:
+    lines = as_csv(curve()).splitlines()
+    names = lines[0].split(",")
+    table = np.array([[float(one) for one in line.split(",")] for line in lines[1:]])
+    table[:, [name.startswith(column) for name in names]] *= factor
+    rows = [",".join(f"{one:.9g}" for one in row) for row in table]
+    path = tmp_path / "c.csv"
+    path.write_text("\n".join([lines[0], *rows]))
+    result = run("judge-insertion", "--curve", str(path), "--connector", DRAWING)
+    assert isinstance(result.exception, InsertionCurveInvalid)
+    assert f"{path}: {said}" in str(result.exception)
+    assert "another unit, such as" in str(result.exception)
+
+
 def test_a_curve_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
     result = run("judge-insertion", "--curve", str(tmp_path / "no.csv"), "--connector", DRAWING)
     assert isinstance(result.exception, InsertionCurveInvalid)

@@ -186,6 +186,25 @@ def test_times_in_another_unit_are_refused() -> None:
         parse_curve(as_csv(rows[::-1], kinds))
 
 
+@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize(
+    ("columns", "factor", "said"),
+    [
+        ("depth_mm", 1e-3, "depth_mm stays within 0.01"),
+        ("fx_n fy_n fz_n", 1e-3, "fx_n, fy_n, fz_n: at most 0.01"),
+        ("fx_n fy_n fz_n", 1e3, "fx_n, fy_n, fz_n: up to"),
+        ("time_s", 1.5e-3, "time_s: by it the part went in at"),
+    ],
+)
+def test_numbers_in_another_unit_are_refused_with_their_column(
+    columns: str, factor: float, said: str, named: bool
+) -> None:
+    rows, kinds = inserted(GOOD)
+    rows[:, [NAMES.index(name) for name in columns.split()]] *= factor
+    with pytest.raises(PegCurveInvalid, match=said):
+        judge_curve(parse_curve(as_csv(rows, kinds if named else None)), part())
+
+
 @pytest.mark.parametrize("name", NAMES[:7])
 def test_a_missing_column_is_named(name: str) -> None:
     rows, _ = inserted(GOOD)
