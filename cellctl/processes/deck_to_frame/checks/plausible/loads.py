@@ -53,6 +53,7 @@ def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Conf
         )
         value = f"{mating.acceleration_mm_s2:g}"
         yield ConfigIssue(f"{key}.mating.acceleration_mm_s2", value, allowed)
+    yield from _fast_travel(cell, recipe, weighed_kg, key)
     if mating.max_untared_force_n > _MOST_LEFT * weight_n:
         left_n = mating.max_untared_force_n
         allowed = (
@@ -61,6 +62,33 @@ def load_issues(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Conf
             f"or that force at most {_MOST_LEFT * weight_n:.0f} N"
         )
         yield ConfigIssue(f"robots.{robot}.load.mass_kg", f"{load.mass_kg:g}", allowed)
+
+
+def _fast_travel(
+    cell: CellConfig, recipe: DeckRecipe, weighed_kg: float, key: str
+) -> Iterator[ConfigIssue]:
+    """A fast travel that meets what nothing has measured with more than the sensor carries.
+
+    A deck that is thicker than stated meets its frame there. The guard sees it at its limit, and
+    the force grows by stiffness times speed until the arm stands (docs/mating.md).
+    """
+    measuring = measuring_range(cell.force_sensors[recipe.device(FORCE)])
+    if not measuring:
+        return
+    mating = recipe.mating
+    left_n = min(measuring[:3]) - weighed_kg * G_M_S2 - FAST_LIMIT_N
+    grows_n = mating.stiffness_n_per_mm * mating.stop_latency_ms / 1e3
+    if left_n <= 0.0 or mating.fast_speed_mm_s * grows_n <= left_n:
+        return  # a sensor too weak for the weight itself is named by its own check
+    most_mm_s = int(10.0 * left_n / grows_n) / 10.0  # rounded down: what is named has to pass
+    pressed_n = mating.fast_speed_mm_s * grows_n
+    allowed = (
+        f"at most {most_mm_s:g}: a deck that is thicker than stated meets its frame on the fast "
+        f"travel, and at this speed presses {pressed_n:.0f} N before the arm stands "
+        f"(stiffness_n_per_mm times stop_latency_ms); the sensor carries {left_n:.0f} N beside "
+        "the weight"
+    )
+    yield ConfigIssue(f"{key}.mating.fast_speed_mm_s", f"{mating.fast_speed_mm_s:g}", allowed)
 
 
 def load_remarks(cell: CellConfig, recipe: DeckRecipe) -> Iterator[ConfigIssue]:

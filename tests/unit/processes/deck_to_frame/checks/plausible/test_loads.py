@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import load_cell
 from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
@@ -30,3 +32,25 @@ def test_a_heavy_load_must_begin_to_move_more_slowly() -> None:
     assert issue.key == "recipes[1].mating.acceleration_mm_s2"
     # 20 N / 2 / 650 kg
     assert issue.allowed.startswith("at most 15: 650 kg that begin to move")
+
+
+@pytest.mark.parametrize(
+    ("speed_mm_s", "latency_ms", "most"),
+    [(10.0, 300.0, None), (12.0, 300.0, "10"), (5.0, 700.0, "4.3")],
+)
+def test_the_fast_travel_presses_no_more_than_the_sensor_carries_beside_the_weight(
+    speed_mm_s: float, latency_ms: float, most: str | None
+) -> None:
+    """A deck that is thicker than stated: 20 N and 1000 N/mm times speed and latency, of 5 kN."""
+    cell = load_cell(CONFIG / "deck.toml")
+    (recipe,) = cell.recipes
+    assert isinstance(recipe, DeckRecipe)
+    changed = {"fast_speed_mm_s": speed_mm_s, "stop_latency_ms": latency_ms}
+    mating = recipe.mating.model_copy(update=changed)
+    issues = list(load_issues(cell, recipe.model_copy(update={"mating": mating}), "recipes[1]"))
+    if most is None:
+        assert issues == []
+        return
+    (issue,) = issues
+    assert issue.key == "recipes[1].mating.fast_speed_mm_s"
+    assert issue.allowed.startswith(f"at most {most}: a deck that is thicker than stated")
