@@ -169,15 +169,8 @@ class RunInterrupted(RecordsError):
 
     number = 821
     text = "A run was interrupted by the end of the daemon"
-    cause = (
-        "Comes when the daemon starts, for each run that was open when the daemon was killed or "
-        "the PC lost its power."
-    )
-    remedy = (
-        "Nothing has moved since the start. Look at arm and part, with the step, poses and forces "
-        "in the detail; then Clear and Reset, which lifts an arm off that stands in the station. "
-        "The run stays interrupted: `cellctl runs show RUN`."
-    )
+    cause = "Comes when the daemon starts: it was killed, or the PC lost its power, in this run."
+    remedy = "Look at arm and part, see the detail; then Clear and Reset, which lifts the arm off."
     reaction = Reaction.WARN
 
 
