@@ -37,9 +37,13 @@ class Examination:
     """The cell file; None where its keys cannot be read."""
 
 
-def examine_before_commissioning(path: Path) -> Examination:
-    """Errors and remarks of a cell file; touches no hardware. Raises ``ConfigUnreadable``."""
-    found, cell, lines = examine(path)
+def examine_before_commissioning(path: Path, text: str | None = None) -> Examination:
+    """Errors and remarks of a cell file; touches no hardware. Raises ``ConfigUnreadable``.
+
+    With ``text``, of the file as it would be that holds it: the model and all other files that it
+    names are looked for beside ``path``.
+    """
+    found, cell, lines = examine(path, text)
     if cell is not None:
         found += unpermitted(cell)
         found += unless_named(found, list(_implausible(cell, path, found)))
@@ -51,9 +55,9 @@ def examine_before_commissioning(path: Path) -> Examination:
     return Examination(tuple(placed(found, lines)), tuple(placed(remarks, lines)), needs, cell)
 
 
-def problems_before_commissioning(path: Path) -> list[ConfigIssue]:
+def problems_before_commissioning(path: Path, text: str | None = None) -> list[ConfigIssue]:
     """The errors alone."""
-    return list(examine_before_commissioning(path).errors)
+    return list(examine_before_commissioning(path, text).errors)
 
 
 def _implausible(cell: CellConfig, path: Path, found: list[ConfigIssue]) -> Iterator[ConfigIssue]:

@@ -57,10 +57,13 @@ def cell_from_document(document: Mapping[str, Any]) -> CellConfig:
     return cell
 
 
-def examine(path: Path) -> tuple[list[ConfigIssue], CellConfig | None, dict[str, int]]:
+def examine(
+    path: Path, text: str | None = None
+) -> tuple[list[ConfigIssue], CellConfig | None, dict[str, int]]:
     """Every error without its line, the cell where its keys could be read, and the line of every
-    key."""
-    text, raw = _read_toml(path)
+    key; with ``text``, as the file would be that holds it."""
+    text = _read(path) if text is None else text
+    raw = _parsed(path, text)
     if kind := other_kind(raw):
         raise ConfigUnreadable(f"{path}: this is {kind}; needed is the cell file beside it")
     lines = key_lines(text)
@@ -172,13 +175,16 @@ def _of_another_device(issue: ConfigIssue, raw: Mapping[str, Any]) -> ConfigIssu
     return replace(issue, allowed=allowed)
 
 
-def _read_toml(path: Path) -> tuple[str, dict[str, Any]]:
+def _read(path: Path) -> str:
     try:
-        text = path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
+
+
+def _parsed(path: Path, text: str) -> dict[str, Any]:
     try:
-        return text, tomllib.loads(text)
+        return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ConfigUnreadable(f"{path}: {error}{toml_hint(text, str(error))}") from error
 

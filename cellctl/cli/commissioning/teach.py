@@ -2,7 +2,7 @@
 
 import asyncio
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,16 +10,19 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from cellctl.atomic_files import remove_durably, write_durably
+from cellctl.atomic_files import write_durably
 from cellctl.cell.robot_reports import joints_deg, state_as_json
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.cli.consoles import console_of_lines
 from cellctl.clock import now_s, utc_now
-from cellctl.config import CellConfig, problems
-from cellctl.config.document.taught_pose_text import with_pose
+from cellctl.config import CellConfig, problems_before_commissioning
+from cellctl.config.document.lines import key_lines
+from cellctl.config.document.taught_pose_text import pose_line, with_pose
+from cellctl.config.load import placed
 from cellctl.errors.config import ConfigInvalid
 from cellctl.interfaces import Robot, RobotState
+from cellctl.spelling import nearest
 
 _STILL_S = 0.5
 _STILL_DEG = 0.01
@@ -51,7 +54,23 @@ def teach(
         else:
             _show_comparison(console, name, compared)
         return
-    asyncio.run(_capture_all(console, cell_file, cell, name, poses))
+    meant = list(_meant(console, cell, name, poses))
+    if meant:
+        asyncio.run(_capture_all(console, cell_file, cell, name, meant))
+
+
+def _meant(console: Console, cell: CellConfig, name: str, poses: Sequence[str]) -> Iterator[str]:
+    """The poses without those whose names were mistyped, asked about before anybody brings an arm
+    there: another name than the one that was meant would leave the old pose in use."""
+    taught = cell.robots[name].poses_deg
+    for pose in poses:
+        if pose not in taught:
+            likely = nearest(pose, taught) or f"it has {', '.join(taught) or 'none'}. "
+            question = f"{name} has no pose {pose!r}: {likely}Is {pose!r} a new one?"
+            if not typer.confirm(question):
+                console.print(f"{pose}: left out")
+                continue
+        yield pose
 
 
 async def _compared(cell: CellConfig, name: str) -> dict[str, Any]:
@@ -109,22 +128,25 @@ async def _standing(robot: Robot) -> RobotState | None:
 
 
 def write_pose(cell_file: Path, robot: str, pose: str, values_deg: Sequence[float]) -> None:
-    """Write one pose, or nothing: raises ``ConfigInvalid`` when the file would have errors that it
-    has not now, ``FileInvalid`` when there is no place for the pose, ``OSError``."""
+    """Write one pose, or nothing.
+
+    Raises ``ConfigInvalid`` when `cellctl check` would find errors that the file does not have yet,
+    ``FileInvalid`` when there is no place for the pose, ``OSError``.
+    """
     remark = f"taught {utc_now():%Y-%m-%d %H:%M} UTC"
-    text = with_pose(cell_file.read_text(encoding="utf-8"), robot, pose, values_deg, remark)
-    # Beside the cell file, as feature files and others are looked for from there.
-    draft = cell_file.with_name(f".{cell_file.name}.draft")
-    known = {(issue.key, issue.value) for issue in problems(cell_file)}
-    write_durably(draft, text.encode("utf-8"))
-    try:
-        new = [one for one in problems(draft) if (one.key, one.value) not in known]
-    finally:
-        remove_durably(draft)
-    if new:
-        facts = "; ".join(str(one) for one in new)
-        raise ConfigInvalid(f"{pose} is not written, the file is as it was: {facts}")
-    write_durably(cell_file, text.encode("utf-8"))
+    before = cell_file.read_text(encoding="utf-8")
+    after = with_pose(before, robot, pose, values_deg, remark)
+    known = {(one.key, one.value) for one in problems_before_commissioning(cell_file, before)}
+    found = problems_before_commissioning(cell_file, after)
+    if new := [one for one in found if (one.key, one.value) not in known]:
+        # Lines of the file that stays, which a new line would have moved.
+        facts = "; ".join(str(one) for one in placed(new, key_lines(before)))
+        raise ConfigInvalid(
+            f"{pose} is not written, the file is as it was: {facts}. Where the other value is the "
+            "wrong one, correct that first; the joints where the arm stands: "
+            f"{pose_line(pose, values_deg)}"
+        )
+    write_durably(cell_file, after.encode("utf-8"))
 
 
 def _show(console: Console, state: RobotState, taught: Sequence[float] | None) -> None:

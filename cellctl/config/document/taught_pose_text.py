@@ -29,7 +29,7 @@ def with_pose(
     if robot not in before.get("robots", {}):
         raise FileInvalid(f"the cell file has no robot {robot!r}")
     lines = text.splitlines()
-    numbers = [round(float(angle), 5) + 0.0 for angle in joints_deg]
+    numbers = _rounded(joints_deg)
     value = str(numbers)
     _place(lines, robot, pose, value, remark)
     changed = "\n".join(lines) + ("\n" if text.endswith("\n") or not text else "")
@@ -38,9 +38,18 @@ def with_pose(
     if _parsed(changed) != expected:
         raise FileInvalid(
             f"robots.{robot}.poses_deg.{pose} cannot be placed in this file; write it yourself: "
-            f"{pose} = {value}"
+            f"{pose_line(pose, joints_deg)}"
         )
     return changed
+
+
+def pose_line(pose: str, joints_deg: Sequence[float]) -> str:
+    """Joints in degrees as a person would write them into the file."""
+    return f"{pose} = {_rounded(joints_deg)}"
+
+
+def _rounded(joints_deg: Sequence[float]) -> list[float]:
+    return [round(float(angle), 5) + 0.0 for angle in joints_deg]
 
 
 def _place(lines: list[str], robot: str, pose: str, value: str, remark: str) -> None:
