@@ -39,7 +39,7 @@ demo-insertion: venv
 	$(BIN)/cellctl demo --process peg-in-hole --cell connector --seed $(SEED) $(ARGS)
 
 demo-calibration: venv
-	$(BIN)/cellctl demo --calibrate --seed $(SEED)
+	$(BIN)/cellctl demo --calibrate --seed $(SEED) $(ARGS)
 
 # The fake GenTL producer in FOLDER, for other programs; tests and demo compile their own.
 FOLDER ?= .

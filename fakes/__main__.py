@@ -1,11 +1,12 @@
-"""The fake cell and its helpers: ``python -m fakes run | plc | demo | taught | imperfections``."""
+"""The fake cell and its helpers: ``python -m fakes run | operator | plc | demo | taught``, and
+``imperfections``."""
 
 import asyncio
 import json
 import os
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -15,6 +16,8 @@ from fakes.scenes.load import load
 from fakes.taught import taught as taught_poses
 
 DEFAULT_SCENARIO = Path("config/deck.scenario.toml")
+DEFAULT_CONTROL = 7900
+"""That of the shipped scenarios."""
 ScenarioOption = Annotated[Path, typer.Option("--scenario", help="Scenario file.")]
 RobotsOption = Annotated[
     JobController | None,
@@ -40,10 +43,11 @@ def taught(scenario: ScenarioOption = DEFAULT_SCENARIO) -> None:
 
 @app.command()
 def imperfections() -> None:
-    """List what can be imperfect about a fake cell: size, where it acts, source of the size."""
+    """List what can be imperfect about a fake cell: size, where it acts, its source, its seed."""
     for name, one in CATALOGUE.items():
         size = f"{one.size:g} {one.unit}" if one.unit else ", ".join(one.keys)
-        typer.echo(f"{name}: {size}\n    {one.acts}\n    source: {one.source}")
+        seed = "none" if one.drawn_by is None else f"of the {one.drawn_by}"
+        typer.echo(f"{name}: {size}\n    {one.acts}\n    source: {one.source}\n    seed: {seed}")
 
 
 @app.command()
@@ -74,6 +78,47 @@ def run(
     written = load(scenario, scales)
     described = written if robots is None else written.with_controllers(robots)
     raise typer.Exit(asyncio.run(run_cell(described, seed, ports, gentl)))
+
+
+@app.command()
+def operator(
+    command: Annotated[str, typer.Argument(help="As fakes/README.md lists them, or status.")],
+    members: Annotated[
+        list[str] | None, typer.Argument(help="NAME=VALUE, as in head=head_1 or frame=false.")
+    ] = None,
+    port: Annotated[int, typer.Option(help="Control port of the fake cell.")] = DEFAULT_CONTROL,
+) -> None:
+    """Be the hands of the operator at a fake cell that runs: lay boards, bring parts.
+
+    Prints what the fake cell answers, as JSON; exit code 1 when it refuses or is not there.
+    """
+    from fakes.demo.control import Control, Refused
+
+    given = dict(_member(item) for item in members or [])
+    try:
+        control = Control(port)
+    except OSError as error:
+        typer.echo(f"no fake cell listens on port {port}: {error}", err=True)
+        raise typer.Exit(1) from error
+    try:
+        reply = control.request(command, **given)
+    except Refused as error:
+        typer.echo(str(error), err=True)
+        raise typer.Exit(1) from error
+    finally:
+        control.close()
+    typer.echo(json.dumps({key: value for key, value in reply.items() if key != "id"}))
+
+
+def _member(item: str) -> tuple[str, Any]:
+    """Name and value; a value that is no JSON is a text."""
+    name, separator, value = item.partition("=")
+    if not (separator and name):
+        raise typer.BadParameter(f"expected NAME=VALUE, got {item!r}")
+    try:
+        return name, json.loads(value)
+    except ValueError:
+        return name, value
 
 
 def _port(item: str) -> tuple[str, int]:

@@ -7,7 +7,7 @@ were.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,6 +21,10 @@ class Imperfection:
     """Where it acts, and how."""
     source: str
     """Where the size comes from; "assumed" where nobody has measured it."""
+    drawn_by: Literal["hardware", "run"] | None = None
+    """Seed that draws it: that of the hardware where it belongs to a device for its whole life, that
+    of the run where it differs from day to day, part to part or motion to motion. None for what
+    is the same in all cells: nothing of it is drawn."""
     keys: tuple[str, ...] = ()
     """Sizes in the scenario file that the scale multiplies, ``*`` for every device of a kind."""
     calibrated: bool = False
@@ -34,16 +38,19 @@ CATALOGUE: Mapping[str, Imperfection] = {
         "before its kinematic calibration, about 1 mm over the whole reach",
         keys=("robots.*.link_sigma_mm", "robots.*.link_sigma_deg", "robots.*.joint_sigma_deg"),
         calibrated=True,
+        drawn_by="hardware",
     ),
     "repeatability": Imperfection(
         0.0, "", "pose of every arm at the end of a motion", "data sheets: ±0.05 mm and ±0.03 mm",
         keys=("robots.*.repeatability_mm", "robots.*.repeatability_deg", "robots.*.settling_mm",
               "robots.*.settling_deg"),
+        drawn_by="run",
     ),
     "reducer_ripple": Imperfection(
         25.0, "arcsec", "joints of an arm that carries a force sensor: amplitude of the "
         "transmission error, which changes with the angle 40 times a turn",
         "data sheets of cycloidal (RV) reducers: at most 50 to 60 arcsec from peak to peak",
+        drawn_by="hardware",
     ),
     "gravity_sag": Imperfection(
         15.0, "arcsec", "second and third joint of such an arm, stretched out level",
@@ -52,21 +59,25 @@ CATALOGUE: Mapping[str, Imperfection] = {
     "base_drift": Imperfection(
         0.06, "mm", "base of every arm: offset since the calibrations, and as much in an hour",
         "a metre of steel, 5 K",
+        drawn_by="run",
     ),
     "latency_jitter": Imperfection(
         10.0, "ms", "start of every motion: later by up to this much",
         "the job program polls its sockets once in an interpolation cycle of 4 to 12 ms",
+        drawn_by="run",
     ),
     "stop_jitter": Imperfection(
         0.1, "ratio", "stop: the latency differs by up to this share, the brakes are weaker by up "
         "to it, anew each motion",
         "assumed; procedure 107 measures the spread on a real arm",
+        drawn_by="run",
     ),
     # -- what the arm carries ----------------------------------------------------------------------
     "grip_slip": Imperfection(
         0.005, "mm", "deck in the gripper: shifts along each axis by up to this at every start of "
         "a motion, until the frame carries it",
         "assumed: a tenth of the loop's threshold",
+        drawn_by="run",
     ),
     "deck_flex": Imperfection(
         0.02, "mm", "deck in the gripper: its corners hang lower than its middle by this",
@@ -75,6 +86,7 @@ CATALOGUE: Mapping[str, Imperfection] = {
     "burr": Imperfection(
         0.02, "mm", "height of one burr somewhere under the rim of the deck",
         "edges without a burr as by ISO 13715: at most 0.02 to 0.05 mm",
+        drawn_by="run",
     ),
     # -- force sensor ------------------------------------------------------------------------------
     "sensor_crosstalk": Imperfection(
@@ -82,22 +94,27 @@ CATALOGUE: Mapping[str, Imperfection] = {
         "data sheets of six-axis sensors: 1 to 3 % of the range between channels",
         keys=("force_sensors.*.gain_sigma", "force_sensors.*.crosstalk_sigma"),
         calibrated=True,
+        drawn_by="hardware",
     ),
     "sensor_noise": Imperfection(
         0.0, "", "every sample of the force sensor", "0.03 % of the range, white",
         keys=("force_sensors.*.noise_n", "force_sensors.*.noise_nm"),
+        drawn_by="run",
     ),
     "sensor_hum": Imperfection(
         0.0, "", "reading of the force sensor at 12 Hz, from the swaying arm", "assumed",
         keys=("force_sensors.*.vibration_n",),
+        drawn_by="run",
     ),
     "sensor_drift": Imperfection(
         0.0, "", "zero of the force sensor", "warming up: 0.01 % of the range in a minute",
         keys=("force_sensors.*.drift_n_per_min", "force_sensors.*.drift_nm_per_min"),
+        drawn_by="hardware",
     ),
     "sensor_nonlinearity": Imperfection(
         0.002, "ratio of range", "reading of the force sensor: bent like x - x³",
         "data sheets of six-axis sensors: 0.2 to 0.5 % of the range",
+        drawn_by="hardware",
     ),
     "sensor_hysteresis": Imperfection(
         0.002, "ratio of range", "reading of the force sensor, from branch to branch of a full "
@@ -114,34 +131,42 @@ CATALOGUE: Mapping[str, Imperfection] = {
         keys=("optics.*.focal_spread_px", "optics.*.centre_spread_px",
               "optics.*.distortion_spread"),
         calibrated=True,
+        drawn_by="hardware",
     ),
     "image_noise": Imperfection(
         0.0, "", "every pixel of every exposure: read noise", "industrial CMOS sensors in 8 bits",
         keys=("rendering.read_noise_levels",),
+        drawn_by="run",
     ),
     "uneven_light": Imperfection(
         0.0, "", "light from one side of the image to the other", "ring light at 500 mm, assumed",
         keys=("rendering.light_gradient",),
+        drawn_by="hardware",
     ),
     "lens_misfit": Imperfection(
         0.05, "px", "every lens: waves that the model with five parameters cannot follow",
         "parametric models against splined ones leave 0.05 to 0.3 px on real lenses",
         calibrated=True,
+        drawn_by="hardware",
     ),
     "head_drift": Imperfection(
         0.015, "mm", "mount of every camera: offset since the calibrations, and as much in an hour",
         "120 mm of aluminium, 5 K",
+        drawn_by="run",
     ),
     "vibration": Imperfection(
         10.0, "µrad", "line of sight of every camera at 12 Hz, root mean square; smears it too",
         "a floor with 0.4 mm/s (the ISO limit of offices): 5 µm at 12 Hz, at a distance of 0.5 m",
+        drawn_by="run",
     ),
     "exposure_drift": Imperfection(
         0.02, "ratio", "brightness of every exposure", "LED light: 0.4 % per K, 5 K",
+        drawn_by="run",
     ),
     "glare": Imperfection(
         0.1, "ratio", "highlight in the picture of every camera, beside the 0.1 that it has anyway",
         "assumed; a worn or oily milled face",
+        drawn_by="hardware",
     ),
     "tilt_shading": Imperfection(
         1.0, "ratio", "highlight: moves with the tilt of the surface as in a mirror", "geometry",

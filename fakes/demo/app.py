@@ -60,7 +60,9 @@ def demo(
     process: Annotated[
         str, typer.Option(help="Which process; an unknown name lists those that there are.")
     ] = DEFAULT_PROCESS,
-    seed: Annotated[int, typer.Option(help="Another seed is another cell.", min=0)] = 1,
+    seed: Annotated[
+        int, typer.Option(help="Another seed is another day: other parts, grips and noise.", min=0)
+    ] = 1,
     scenario: Annotated[
         Path | None,
         typer.Option(help="Of the fake cell; default: NAME.scenario.toml beside --cell NAME.toml."),

@@ -47,6 +47,9 @@ class ArmFlaws:
     def of(cls, scenario: Scenario, robot: str, seed: int) -> Self:
         """What the scenario says of one of its arms.
 
+        Its transmissions are the same on every day of its life and belong to the hardware seed;
+        what differs from day to day and from motion to motion is drawn by ``seed``, that of the run.
+
         An arm that carries a camera returns to the pose at which that was calibrated, where the
         transmission errors are the same again: they matter on arms that carry a force sensor.
         """
@@ -56,7 +59,7 @@ class ArmFlaws:
         transmission = None
         if carrying and (ripple_rad or sag_rad):
             transmission = Transmission(
-                stream(seed, "reducer ripple", robot),
+                stream(scenario.hardware_seed, "reducer ripple", robot),
                 scenario.robots[robot].chain_mm,
                 ripple_rad=ripple_rad,
                 sag_rad=sag_rad,

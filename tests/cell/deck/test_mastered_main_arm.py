@@ -13,19 +13,13 @@ TURNED_DEG = 0.03
 
 
 def test_a_main_arm_that_was_mastered_anew(own: OwnCell) -> None:
-    # The shipped base frame was measured by an arm without these; 109 would tell of them.
-    scenario = own.scenario.read_text(encoding="utf-8")
-    for name in ("reducer_ripple", "gravity_sag", "base_drift"):
-        assert f"{name} = 1.0" in scenario
-        scenario = scenario.replace(f"{name} = 1.0", f"{name} = 0.0")
-    own.scenario.write_text(scenario, encoding="utf-8")
     own.fake().ready()
     daemon = own.daemon()
     daemon.ready()
     base_frame = next(procedure for procedure in PROCEDURES if procedure.number == 103)
     with own.control() as control:
         base_frame.prepare(control)
-        # The arm is mastered by the reference that is shipped with the base frame.
+        # As a fresh cell is: with the reference that is shipped with its base frame.
         plc = own.plc("--mode", "maintenance", "--recipe", "109")
         assert plc.end(120) == 0, plc.stdout
         assert plc.messages[-1]["result"] == "good"

@@ -1,5 +1,6 @@
 """The catalogue of imperfections: names, scales, and streams that do not disturb each other."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from fakes.imperfections import CATALOGUE, UnknownImperfection, parsed_scale
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 from fakes.scenes.load import load
+from fakes.world.scene import StereoTruth
 
 CONFIG = Path(__file__).parents[3] / "config"
 SHIPPED = CONFIG / "deck.scenario.toml"
@@ -78,3 +80,77 @@ def _drawn(scales: dict[str, float]) -> np.ndarray:
 def test_switching_one_on_leaves_the_draws_of_the_others(name: str) -> None:
     """A size of almost nothing changes the world by almost nothing."""
     np.testing.assert_allclose(_drawn({name: 1e-9}), _drawn({}), atol=1e-6)
+
+
+RENDERED = ("image_noise", "uneven_light", "glare", "tilt_shading", "deck_flex")
+"""What the renderer makes of a scene: the seeds that a scene carries have a test of their own."""
+
+
+def _scenario(scales: Mapping[str, float], hardware_seed: int) -> DeckScenario:
+    """The shipped cell with none of the catalogue's sizes but these, and with other devices."""
+    alone = {name: 0.0 for name, one in CATALOGUE.items() if not one.keys}
+    shipped = DeckScenario.read(SHIPPED, alone | dict(scales))
+    return shipped.model_copy(update={"hardware_seed": hardware_seed})
+
+
+def _observed(scenario: DeckScenario, seed: int) -> dict[str, np.ndarray]:
+    """What can be seen of a cell whose arms set out, are stopped on their way, and stand."""
+    world = DeckOnFrame(scenario, seed)
+    arms, cameras = world.arms.items(), world.truth.cameras
+    for _, arm in arms:
+        arm.start_joint(0.0, arm.joints(0.0) + 0.3, 100)
+    world.advance(0.6)
+    seen = {f"{name} on its way": world.flange(name).as_matrix() for name, _ in arms}
+    for _, arm in arms:
+        arm.stop(world.time_s)
+    world.advance(2.0)
+    seen |= {f"{name} stopped": world.flange(name).as_matrix() for name, _ in arms}
+    seen["sensor"] = world.sensor_wrench("force", world.time_s)
+    seen |= {f"{name} at": world.camera_pose(name).as_matrix() for name in cameras}
+    exposures = [world.camera_scene("head_1").exposure for _ in range(3)]
+    seen["sway"] = np.array([one.sway_rad for one in exposures])
+    seen["gain"] = np.array([one.gain for one in exposures])
+    optics = cameras["head_1"].optics
+    assert isinstance(optics, StereoTruth)
+    seen["lens"] = np.array(optics.left.focal_px)
+    seen["waves"] = optics.left.misfit[0] * np.sin(optics.left.misfit[1:])
+    parts = world.placed.parts
+    assert parts is not None
+    seen["grip"] = parts.flange_T_deck.as_matrix()
+    seen["burr"] = np.array(parts.burr_m or (0.0, 0.0, 0.0))
+    return seen
+
+
+def _effect(name: str, *, hardware_seed: int, seed: int) -> dict[str, np.ndarray]:
+    """By how much one imperfection alone changes what can be seen, where it does."""
+    without, with_it = (1.0, 3.0) if CATALOGUE[name].keys else (0.0, 1.0)
+    before = _observed(_scenario({name: without}, hardware_seed), seed)
+    after = _observed(_scenario({name: with_it}, hardware_seed), seed)
+    changes = {key: after[key] - before[key] for key in before}
+    return {key: change for key, change in changes.items() if np.abs(change).max() > 1e-9}
+
+
+def _alike(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
+    """Equal but for what they do to each other, which is of second order."""
+    return one.keys() == other.keys() and all(
+        np.abs(one[key] - other[key]).max() < 0.05 * np.abs(one[key]).max() for key in one
+    )
+
+
+@pytest.mark.parametrize("name", sorted(CATALOGUE.keys() - set(RENDERED)))
+def test_each_is_drawn_by_the_seed_that_the_catalogue_says(name: str) -> None:
+    effect = _effect(name, hardware_seed=1, seed=1)
+    assert effect, "it acts on nothing that can be seen"
+    another_run = _alike(effect, _effect(name, hardware_seed=1, seed=2))
+    assert another_run is (CATALOGUE[name].drawn_by != "run")
+    if CATALOGUE[name].drawn_by == "hardware":
+        assert not _alike(effect, _effect(name, hardware_seed=2, seed=1))
+
+
+def test_light_belongs_to_the_devices_and_noise_to_the_run() -> None:
+    scenario = _scenario({}, 1)
+    one, other = (DeckOnFrame(scenario, seed).camera_scene("head_1") for seed in (1, 2))
+    assert one.light_seed == other.light_seed
+    assert one.noise_seed != other.noise_seed
+    assert CATALOGUE["uneven_light"].drawn_by == CATALOGUE["glare"].drawn_by == "hardware"
+    assert CATALOGUE["image_noise"].drawn_by == "run"

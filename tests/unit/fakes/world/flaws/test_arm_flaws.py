@@ -20,9 +20,10 @@ def with_scales(scenario: DeckScenario, **scales: float) -> DeckScenario:
     return scenario.model_copy(update={"imperfections": scales})
 
 
-def arm_of(scenario: DeckScenario, seed: int = 1, robot: str = "main") -> RobotArm:
-    flaws = ArmFlaws.of(scenario, robot, seed)
-    return RobotArm(scenario.robots[robot], draw(scenario, 1).robots[robot], seed, flaws)
+def arm_of(scenario: DeckScenario, robot: str = "main") -> RobotArm:
+    flaws = ArmFlaws.of(scenario, robot, 1)
+    built = draw(scenario, scenario.hardware_seed).robots[robot]
+    return RobotArm(scenario.robots[robot], built, 1, flaws)
 
 
 def test_reducer_ripple_has_its_amplitude_and_its_period(scenario: DeckScenario) -> None:
@@ -46,14 +47,14 @@ def test_sag_lowers_a_level_arm_most(scenario: DeckScenario) -> None:
 def test_the_last_100_mm_leave_the_loop_something_to_do(scenario: DeckScenario) -> None:
     """The error changes on the way by more than the loop's threshold of 0.05 mm or 0.005°, and
     so little over a correction of that error that a second look finds next to nothing."""
-    flawed = with_scales(scenario, reducer_ripple=1.0)
     ways_mm, steps = [], []
-    for seed in range(1, 9):
-        plain, arm = arm_of(scenario, seed), arm_of(flawed, seed)
+    for hardware_seed in range(1, 9):
+        built = scenario.model_copy(update={"hardware_seed": hardware_seed})
+        flawed = with_scales(built, reducer_ripple=1.0)
         changes = []
         for down_m in (0.1, 0.001):
             ends = []
-            for one in (plain, arm):
+            for one in (arm_of(built), arm_of(flawed)):
                 one.start_joint(0.0, ABOVE_RAD, 100)
                 time_s = one.standstill_s
                 start = one.flange(time_s)
@@ -62,11 +63,25 @@ def test_the_last_100_mm_leave_the_loop_something_to_do(scenario: DeckScenario) 
                 one.start_linear(time_s, target, 0.1, 1.0)
                 ends.append(start.inv() * one.flange(one.standstill_s))
             changes.append(distance(ends[0], ends[1])[0])
-            plain, arm = arm_of(scenario, seed), arm_of(flawed, seed)
         ways_mm.append(changes[0] * 1e3)
         steps.append(changes[1] / 0.001)
     assert 0.1 < np.median(ways_mm) < 1.0
     assert max(steps) < 0.03
+
+
+def test_transmissions_belong_to_the_arm_and_not_to_the_day(scenario: DeckScenario) -> None:
+    flawed = with_scales(scenario, reducer_ripple=1.0, gravity_sag=1.0)
+    other = flawed.model_copy(update={"hardware_seed": 2})
+    one_day, next_day, other_arm = (
+        ArmFlaws.of(built, "main", day).transmission
+        for built, day in ((flawed, 1), (flawed, 2), (other, 1))
+    )
+    assert one_day is not None
+    assert next_day is not None
+    assert other_arm is not None
+    error = one_day.error(ABOVE_RAD)
+    np.testing.assert_array_equal(next_day.error(ABOVE_RAD), error)
+    assert np.abs(other_arm.error(ABOVE_RAD) - error).max() > ARCSEC
 
 
 def test_only_an_arm_that_carries_a_force_sensor_has_them(scenario: DeckScenario) -> None:
