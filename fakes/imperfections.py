@@ -22,9 +22,9 @@ class Imperfection:
     source: str
     """Where the size comes from; "assumed" where nobody has measured it."""
     drawn_by: Literal["hardware", "run"] | None = None
-    """Seed that draws it: that of the hardware where it belongs to a device for its whole life, that
-    of the run where it differs from day to day, part to part or motion to motion. None for what
-    is the same in all cells: nothing of it is drawn."""
+    """Seed that draws it: that of the hardware where it belongs to a device for its whole life,
+    that of the run where it differs from day to day, part to part or motion to motion. None for
+    what is the same in all cells: nothing of it is drawn."""
     keys: tuple[str, ...] = ()
     """Sizes in the scenario file that the scale multiplies, ``*`` for every device of a kind."""
     calibrated: bool = False

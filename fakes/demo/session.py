@@ -82,6 +82,7 @@ class Session:
         self._daemon: Child | None = None
         self._daemon_command: list[str] = []
         self._gentl: GentlPath | None = None
+        self._hands: int | None = None
 
     def start_fake(self) -> None:
         """The fake cell, until all its devices listen."""
@@ -103,7 +104,8 @@ class Session:
         if self._gentl is not None:
             arguments += ["--gentl", str(self._gentl.cameras)]
         ports = self._spawn("fake-cell", arguments).wait_ready()["ports"]
-        self._control = Control(int(ports["control"]))
+        self._hands = int(ports["control"])
+        self._control = Control(self._hands)
 
     def start_daemon(self) -> None:
         """The daemon, until every device of its cell file is connected."""
@@ -149,11 +151,13 @@ class Session:
     def _stay(self) -> int:
         data = f"--data-dir {self._folder / 'store'}"
         socket = self._folder / "store" / "cellctl.sock"
+        hands = f"--port {self._hands}"
         self._console.print(
             f"Modbus TCP on 127.0.0.1:{self._modbus_port}, map in docs/register-map.md\n"
             f"  a line PLC to try:  .venv/bin/python -m fakes plc --port {self._modbus_port}\n"
             f"  its state:          .venv/bin/cellctl status --watch --socket {socket}\n"
             f"  its runs:           .venv/bin/cellctl runs list {data}\n"
+            f"  hands at the cell:  .venv/bin/python -m fakes operator status {hands}\n"
             "Ctrl-C ends both"
         )
         starts = 1

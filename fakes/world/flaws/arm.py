@@ -48,7 +48,7 @@ class ArmFlaws:
         """What the scenario says of one of its arms.
 
         Its transmissions are the same on every day of its life and belong to the hardware seed;
-        what differs from day to day and from motion to motion is drawn by ``seed``, that of the run.
+        what differs from day to day and from motion to motion is drawn by ``seed``.
 
         An arm that carries a camera returns to the pose at which that was calibrated, where the
         transmission errors are the same again: they matter on arms that carry a force sensor.

@@ -173,6 +173,7 @@ def test_cell_that_stays_up(own: OwnCell) -> None:
     demo = own.demo(own.folder / "run", "--stay")
     demo.until("an address for the PLC", lambda: "Ctrl-C ends both" in demo.stdout)
     assert f"127.0.0.1:{own.modbus_port}" in demo.stdout
+    assert "python -m fakes operator status --port" in demo.stdout
     send(demo, signal.SIGINT)
     assert demo.end(40) == 0
     demo.nobody_left()

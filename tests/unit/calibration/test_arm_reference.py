@@ -33,7 +33,7 @@ def test_noise_is_no_move() -> None:
 
 
 def test_warmth_is_no_move() -> None:
-    """60 µm along each axis, and a tilt of 60 µrad about both level ones: 5 K in a base of steel."""
+    """60 µm along each axis and 60 µrad about both level ones: 5 K in a base of steel."""
     warmed_m = np.array([-60e-6, -60e-6, 60e-6]) + np.cross([60e-6, -60e-6, 0.0], PLACES_M)
     assert 0.2e-3 < require_arm_at_reference(look(), look(warmed_m)) < 0.3e-3
 

@@ -9,6 +9,9 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 import pytest
+from typer.testing import CliRunner, Result
+
+from fakes.__main__ import app
 
 ROBOT_PORTS = [
     f"{robot}.{channel}" for robot in ("main", "aux_1", "aux_2") for channel in ("CMD", "STA")
@@ -81,6 +84,29 @@ async def test_cell_from_start_to_end() -> None:
             assert reply["message"]
         assert (await ask(control, cmd="status"))["channels"]["main"] == []
     assert process.returncode == 0
+
+
+async def test_hands_of_an_operator_from_a_terminal() -> None:
+    """What docs/commissioning.md says before a procedure on a cell that stays up."""
+    async with running() as (_, ready):
+        port = ("--port", str(ready["ports"]["control"]))
+
+        async def hands(*words: str) -> Result:
+            return await asyncio.to_thread(CliRunner().invoke, app, ["operator", *words, *port])
+
+        assert (await hands("present", "frame=false", "deck=false")).exit_code == 0
+        truth = json.loads((await hands("truth")).stdout)["truth"]
+        assert "base_T_frame_mm_deg" in truth
+        assert "base_T_deck_mm_deg" not in truth
+        assert (await hands("place_target_board", "head=head_1")).exit_code == 0
+        for words in (("dance",), ("place_target_board", "head=head_9")):
+            refused = await hands(*words)
+            assert refused.exit_code == 1
+            assert "fake cell refused" in refused.stderr
+        assert (await hands("present", "frame")).exit_code == 2
+    gone = await hands("status")
+    assert gone.exit_code == 1
+    assert "no fake cell listens on port" in gone.stderr
 
 
 async def test_shutdown_by_the_control_port() -> None:

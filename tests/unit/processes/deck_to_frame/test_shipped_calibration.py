@@ -136,12 +136,14 @@ def test_the_payload_weighs_what_it_weighs(calibrations: CalibrationSnapshot) ->
 def test_latency_and_stiffness_are_true_and_on_the_safe_side(
     calibrations: CalibrationSnapshot, world: DeckOnFrame
 ) -> None:
-    """The latency is that of the fake robot; other parts may be stiffer, within the recipe's."""
+    """The bound of the latency is above the latest stop of the fake robot, whose stops differ
+    from one to the next; other parts may be stiffer, within the recipe's."""
     found = Commissioned.of(calibrations, recipe_id=1)
     assert found.stop_latency_s is not None
     assert found.stiffness_n_m is not None
-    true_s = world.scenario.robots["main"].stop_latency_ms / 1e3
-    assert true_s < found.stop_latency_s < true_s + 0.03
+    mean_s = world.scenario.robots["main"].stop_latency_ms / 1e3
+    latest_s = mean_s * (1 + world.scenario.size_of("stop_jitter"))
+    assert latest_s < found.stop_latency_s < latest_s + 0.03
     arm = world.scenario.payload.stiffness_n_m[2]
     stiffest = world.scenario.contact.stiffness_n_m[1]
     assert 1.5 * found.stiffness_n_m > arm * stiffest / (arm + stiffest)
