@@ -31,6 +31,7 @@ class CellLink:
     report: Report | None = None
     _turn: asyncio.Lock = field(default_factory=asyncio.Lock)
     _news: asyncio.Event = field(default_factory=asyncio.Event)
+    _ended: bool = False
 
     @classmethod
     async def open(
@@ -48,10 +49,18 @@ class CellLink:
         return cls(client, on_report)
 
     async def run(self) -> None:
-        """Beat and read for ever; raises ``CellLost`` or ``MapMismatch``."""
+        """Beat and read until ``end``; raises ``CellLost`` or ``MapMismatch``."""
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self._beat())
             tasks.create_task(self._poll())
+
+    def end(self) -> None:
+        """Beat and read no more.
+
+        To be said beside a cancellation: where an answer comes in the very moment of it, the
+        client's wait takes the answer and forgets the cancellation (Python before 3.12).
+        """
+        self._ended = True
 
     async def write(self, address: int, values: Sequence[int]) -> None:
         """FC16; raises ``CellLost`` when it is not confirmed."""
@@ -70,7 +79,7 @@ class CellLink:
 
     async def _beat(self) -> None:
         count = await self._standing_beat()
-        while True:
+        while not self._ended:
             count = count % 0xFFFF + 1
             await self.write(HEARTBEAT_ADDRESS, [count])
             await asyncio.sleep(HEARTBEAT_PERIOD_S)
@@ -86,7 +95,7 @@ class CellLink:
     async def _poll(self) -> None:
         clock = asyncio.get_running_loop().time
         heartbeat, since = -1, clock()
-        while True:
+        while not self._ended:
             async with self._turn:
                 answer = await self._ask(self.client.read_input_registers(0, count=INPUT_COUNT))
             if answer.isError():

@@ -190,6 +190,7 @@ async def play(host: str, port: int, job: dict[str, object], connect_timeout_s: 
                 watch.result()
             report = work.result()
         finally:
+            link.end()
             for task in (work, watch):
                 task.cancel()
             await asyncio.gather(work, watch, return_exceptions=True)

@@ -5,6 +5,7 @@ import json
 import sys
 from collections.abc import AsyncIterator, Awaitable, Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -18,6 +19,7 @@ from cellctl.packml import PackMLMachine, RejectCode, State
 from cellctl.packml.result import Result
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.runtime.cell_status import CellStatus
+from fakes.wire.line.link import CellLink
 
 ROOT = Path(__file__).parents[3]
 Action = Callable[[], Awaitable[None]]
@@ -156,6 +158,40 @@ async def test_a_job_that_does_not_end_is_stopped_at_its_time_out(
     code, lines = await play(cell.port.port, "--timeout", "0.5")
     assert (code, lines[-1]["result"]) == (5, "timeout")
     await cell.machine.wait_for(State.STOPPED, timeout_s=2)
+
+
+class Forgetful:
+    """Answers come in the moment of a cancellation, which is forgotten (Python before 3.12)."""
+
+    def __init__(self, client: Any) -> None:
+        self._client = client
+        self.asked = asyncio.Event()
+
+    def __getattr__(self, name: str) -> Any:
+        async def ask(*arguments: Any, **named: Any) -> Any:
+            answer = asyncio.ensure_future(getattr(self._client, name)(*arguments, **named))
+            self.asked.set()
+            try:
+                return await asyncio.shield(answer)
+            except asyncio.CancelledError:
+                return await answer
+
+        return ask
+
+
+async def test_a_forgotten_cancellation_does_not_keep_the_line(cells: list[FakelessCell]) -> None:
+    cell = FakelessCell(nothing, Result.GOOD)
+    cells.append(cell)
+    await cell.start()
+    link = await CellLink.open("127.0.0.1", cell.port.port, lambda _report: None, 5.0)
+    client, link.client = link.client, Forgetful(link.client)  # type: ignore[assignment]
+    running = asyncio.create_task(link.run())
+    await link.client.asked.wait()
+    link.end()
+    running.cancel()
+    async with asyncio.timeout(5):
+        await asyncio.gather(running, return_exceptions=True)
+    client.close()
 
 
 async def test_a_cell_whose_heart_stops_is_lost(cells: list[FakelessCell]) -> None:
