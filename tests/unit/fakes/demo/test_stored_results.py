@@ -18,7 +18,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def shown(results: StoredResults) -> str:
-    console = Console(width=120)
+    console = Console(width=200)
     with console.capture() as capture:
         for table in results.new():
             console.print(table)
