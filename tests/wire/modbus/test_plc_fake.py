@@ -184,9 +184,10 @@ async def test_a_forgotten_cancellation_does_not_keep_the_line(cells: list[Fakel
     cells.append(cell)
     await cell.start()
     link = await CellLink.open("127.0.0.1", cell.port.port, lambda _report: None, 5.0)
-    client, link.client = link.client, Forgetful(link.client)  # type: ignore[assignment]
+    client, forgetful = link.client, Forgetful(link.client)
+    link.client = forgetful  # type: ignore[assignment]
     running = asyncio.create_task(link.run())
-    await link.client.asked.wait()
+    await forgetful.asked.wait()
     link.end()
     running.cancel()
     async with asyncio.timeout(5):
