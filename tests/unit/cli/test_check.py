@@ -88,7 +88,8 @@ def test_a_data_folder_that_may_not_be_written_is_a_hint(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The tests may run as root, who may write everywhere.
-    monkeypatch.setattr("cellctl.cli.check.may_write", lambda folder: folder != Path("runs/cell"))
+    asked = "cellctl.cli.commissioning.hints.may_write"
+    monkeypatch.setattr(asked, lambda folder: folder != Path("runs/cell"))
     done = CliRunner().invoke(whole_app(), ["check", str(written(tmp_path, "deck.toml"))])
     assert done.exit_code == 0, done.output
     assert "data_dir runs/cell: this user may not write it" in done.output
