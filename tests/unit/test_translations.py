@@ -3,8 +3,9 @@
 import pkgutil
 import re
 import sys
+import tomllib
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -26,6 +27,7 @@ from tests.unit.test_fault_catalogue import FAULTS, install
 
 FOREIGN = [language for language in translations.LANGUAGES if language != translations.ENGLISH]
 PARTS = ("text", "cause", "remedy")
+CONFIG = Path(__file__).parents[2] / "config"
 CHINESE = re.compile("[\u4e00-\u9fff]")
 _NAMES = re.compile(r"[A-Za-z][A-Za-z_]+")
 _CODE = re.compile(r"`[^`]+`|--[a-z-]+|\w+_\w+|[\w/-]+\.md|\d+(?:\.\d+)?(?:e\d+)?")
@@ -128,6 +130,34 @@ def test_every_procedure_says_what_to_set_up_what_moves_and_what_it_renews() -> 
     assert {one.number for one in _procedures() if not one.guide.set_up} == set()
     assert {one.number for one in _procedures() if not one.guide.moves} == set()
     assert {one.label for one in _procedures() if not one.guide.renews} == {"check main arm"}
+
+
+AWAY = {
+    "deck": ("The deck is taken out of the gripper.", "舱板"),
+    "module": ("The gripper is empty.", "夹爪"),
+    "plate": ("The reference plate is taken away.", "基准板"),
+}
+"""How a guide asks for a body to be away, and what the Chinese sentence has to name."""
+
+
+def _away_in(table: Mapping[str, Any]) -> Iterator[tuple[str, int]]:
+    """Bodies of a model, and each procedure before which a person takes them away."""
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from ((name, number) for number in value.get("absent_in", ()))
+            yield from _away_in(value)
+
+
+def test_guides_ask_for_the_bodies_to_be_taken_away_that_the_shipped_models_have_away() -> None:
+    """Moves of such a procedure are held against the model without them."""
+    guides = {one.number: one.guide for one in _procedures()}
+    models = [tomllib.loads(path.read_text("utf-8")) for path in CONFIG.glob("*.model.toml")]
+    away = {one for model in models for one in _away_in(model)}
+    assert {("deck", 101), ("deck", 103), ("plate", 202), ("module", 201)} <= away
+    assert {one for one in away if AWAY[one[0]][0] not in guides[one[1]].set_up} == set()
+    assert {name for name, (line, word) in AWAY.items() if word not in label(line, "zh")} == set()
+    asked = {number for number, guide in guides.items() if AWAY["deck"][0] in guide.set_up}
+    assert asked == {number for name, number in away if name == "deck"}
 
 
 @pytest.mark.parametrize("language", FOREIGN)

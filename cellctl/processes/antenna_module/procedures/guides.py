@@ -15,7 +15,7 @@ from cellctl.runtime.guide import Guide
 _LEAVES = "The robot leaves the station it stands in and drives home."
 _EMPTY = "The gripper is empty."
 _BOARD_LIES = (
-    ("The calibration board lies where camera I sees it from the taught pose.",),
+    ("The calibration board lies where camera I sees it from the taught pose.", _EMPTY),
     (_LEAVES, "The robot swings camera I about the board, stops for each view, and drives home."),
 )
 _BOARD_HANGS = (
@@ -23,6 +23,7 @@ _BOARD_HANGS = (
         "The calibration board is on the flange, and camera II sees it at the taught pose.",
         # It lies within the space that the board is swung through (docs/planning.md).
         "The reference plate is taken away.",
+        _EMPTY,
     ),
     (_LEAVES, "The robot swings the board over camera II, stops for each view, and drives home."),
 )
