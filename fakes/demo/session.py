@@ -215,7 +215,8 @@ class Session:
         self._console.print(result_table(outcome))
         if outcome.report:
             self._console.print(f"report: {outcome.report}")
-            self._console.print("its records: .venv/bin/cellctl runs list")
+            data = f"--data-dir {self._folder / 'store'}"
+            self._console.print(f"its records: .venv/bin/cellctl runs list {data}")
         if not outcome.judgement.passed:
             return self._not_good(result, faults)
         return GOOD

@@ -8,7 +8,7 @@ from typing import Any, cast
 from cellctl.clock import now_s
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.driver_settings import robot_driver
-from cellctl.errors.config import FileInvalid
+from cellctl.errors.config import DeviceNotInCell
 from cellctl.interfaces import Robot
 
 
@@ -30,8 +30,9 @@ async def connected(cell: CellConfig, name: str) -> AsyncIterator[tuple[Robot, f
 
 
 def cell_with(cell_file: Path, name: str) -> CellConfig:
-    """The cell file, which has such a robot; else ``FileInvalid`` with those that it has."""
+    """The cell file, which has such a robot; else ``DeviceNotInCell`` with those that it has."""
     cell = load_cell(cell_file)
     if name not in cell.robots:
-        raise FileInvalid(f"{cell_file} has no robot {name!r}; it has {', '.join(cell.robots)}")
+        known = ", ".join(cell.robots)
+        raise DeviceNotInCell(f"{cell_file} has no robot {name!r}; it has {known}")
     return cell

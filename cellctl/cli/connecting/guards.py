@@ -60,13 +60,14 @@ def _sensor(name: str, config: ForceSensorConfig, ended: threading.Event) -> Ans
     finally:
         sensor.close()
     gaps_s = _gaps_s(times_s)
+    rate, off_rate = rate_of(health, len(times_s), sensor_rate_hz(config))
     facts = {
         "connected after": f"{connect_s:.2f} s",
-        "samples": f"{len(times_s)} in {LISTEN_S:g} s, {health.rate_hz:.1f} Hz by its own count",
+        "samples": f"{len(times_s)} in {LISTEN_S:g} s, {rate}",
         "apart": spread_ms(gaps_s),
         **felt(forces_n, config),
     }
-    notes = (*_rate(health, sensor_rate_hz(config)), *_late(gaps_s, config), *_bad(health))
+    notes = (*off_rate, *_late(gaps_s, config), *_bad(health))
     return Answer(
         f"force_sensors.{name}", config.driver, facts, serial_number=serial_number, notes=notes
     )
@@ -83,10 +84,20 @@ def felt(forces_n: Sequence[tuple[float, ...]], config: ForceSensorConfig) -> di
     return {"force": f"{felt}, weight and offset included"}
 
 
-def _rate(health: FtHealth, set_hz: float) -> tuple[str, ...]:
-    if abs(health.rate_hz - set_hz) <= _RATE_TOLERANCE * set_hz:
-        return ()
-    return (f"{health.rate_hz:.1f} Hz measured, the cell file says {set_hz:g} Hz",)
+def rate_of(health: FtHealth, count: int, set_hz: float) -> tuple[str, tuple[str, ...]]:
+    """The rate in words, and what is to be looked at of it beside that of the cell file, in Hz.
+
+    A driver has measured none of a stream that was too short for it or has paused; the ``count`` of
+    samples tells it roughly then.
+    """
+    measured = health.rate_hz > 0.0
+    rate_hz = health.rate_hz if measured else count / LISTEN_S
+    words = f"{rate_hz:.1f} Hz by its own count"
+    if not measured:
+        words = "too few or too uneven for a count of its own"
+    if abs(rate_hz - set_hz) <= _RATE_TOLERANCE * set_hz:
+        return words, ()
+    return words, (f"{rate_hz:.1f} Hz measured, the cell file says {set_hz:g} Hz",)
 
 
 def _late(gaps_s: list[float], config: ForceSensorConfig) -> tuple[str, ...]:

@@ -23,7 +23,7 @@ from cellctl.api.local_socket.messages import (
     to_line,
 )
 from cellctl.cli.commands import whole_app
-from cellctl.errors.config import FileInvalid
+from cellctl.errors.config import DeviceNotInCell
 from cellctl.errors.local import CellInUse
 from fakes.demo.control import Control
 from tests.rigs.wire.ports import free_ports
@@ -202,5 +202,5 @@ def test_a_pose_is_written_after_a_yes_only(cell_file: Path) -> None:
 
 
 def test_an_unknown_robot_is_refused_with_those_that_there_are(cell_file: Path) -> None:
-    with pytest.raises(FileInvalid, match="it has arm"):
+    with pytest.raises(DeviceNotInCell, match="it has arm"):
         run("robot", cell_file, "leg")

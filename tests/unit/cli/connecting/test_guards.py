@@ -7,11 +7,12 @@ from collections.abc import Iterator
 
 import pytest
 
-from cellctl.cli.connecting.guards import LISTEN_S, felt, heard_from
+from cellctl.cli.connecting.guards import LISTEN_S, felt, heard_from, rate_of
 from cellctl.clock import now_s
 from cellctl.config.devices import DeviceConfig, ForceSensorConfig
 from cellctl.errors.link import LinkLost
 from cellctl.interfaces import StopChannel
+from cellctl.interfaces.ft_sensor import FtHealth
 from cellctl.interfaces.stop_channel import FlangeState
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
@@ -110,3 +111,13 @@ def test_a_channel_without_a_connection_says_itself_what_it_lost() -> None:
     with pytest.raises(LinkLost, match="closed by the robot"):
         heard_from(dropped, threading.Event(), threading.Event())
     dropped.close()
+
+
+def test_a_rate_that_the_driver_has_not_counted_is_not_0_hz() -> None:
+    """A second of samples may be too short for its two windows, and a pause begins them anew."""
+    words, notes = rate_of(FtHealth(rate_hz=0.0), 1003, 1000.0)
+    assert "Hz" not in words
+    assert notes == ()
+    assert rate_of(FtHealth(rate_hz=998.2), 500, 1000.0) == ("998.2 Hz by its own count", ())
+    _, (note,) = rate_of(FtHealth(rate_hz=0.0), 100, 1000.0)
+    assert note == "100.0 Hz measured, the cell file says 1000 Hz"
