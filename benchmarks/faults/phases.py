@@ -151,7 +151,7 @@ def _reset_home(bench: Bench) -> str:
 def _procedure(number: int, arms: Sequence[str], bench: Bench) -> str:
     bench.to_idle(MAINTENANCE)
     procedure = next(one for one in PROCEDURES if one.number == number)
-    procedure.prepare(bench.control)
+    procedure.prepare(bench.control, bench.own.cell)
     bench.command("Start", mode=MAINTENANCE, recipe=number, serial="FAULT.1")
     return _arm_under_way(bench, f"motion in procedure {number}", UNDER_WAY_MM, number, arms)
 

@@ -18,7 +18,8 @@ class Procedure:
 
     number: int
     title: str
-    prepare: Callable[[Control], None]
+    prepare: Callable[[Control, Path], None]
+    """Given the control port and the cell file, whose poses the operator knows."""
     timeout_s: float = 300.0
     """How long the line waits for it."""
 

@@ -189,7 +189,7 @@ class Session:
             self._console.print(f"{self._demo.process} has no calibrations to run")
         results = StoredResults(self._folder / "calibration")
         for procedure in self._demo.procedures:
-            procedure.prepare(self._control)
+            procedure.prepare(self._control, self._files.cell)
             self._console.print(f"procedure {procedure.number}: {procedure.title}")
             number, timeout_s = str(procedure.number), f"{procedure.timeout_s:g}"
             result = self._line("--mode", "maintenance", "--recipe", number, "--timeout", timeout_s)

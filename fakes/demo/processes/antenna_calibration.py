@@ -1,26 +1,28 @@
 """All calibrations of the antenna's cell, one Maintenance procedure after the other."""
 
+from pathlib import Path
+
 from fakes.demo.control import Control
 from fakes.demo.demo import Procedure
 
 
-def _board_on_table(control: Control) -> None:
-    _put_away(control)
+def _board_on_table(control: Control, cell: Path) -> None:
+    _put_away(control, cell)
     control.request("place_board", where="table")
 
 
-def _board_on_flange(control: Control) -> None:
-    _put_away(control)
+def _board_on_flange(control: Control, cell: Path) -> None:
+    _put_away(control, cell)
     control.request("place_board", where="flange")
 
 
-def _put_away(control: Control) -> None:
+def _put_away(control: Control, _cell: Path) -> None:
     control.request("remove_boards")
 
 
-def _stand_by(control: Control) -> None:
+def _stand_by(control: Control, cell: Path) -> None:
     """A module and a socket to plug by hand, and after each the next ones."""
-    _put_away(control)
+    _put_away(control, cell)
     control.request("load")
     control.request("stand_by", on=True)
 

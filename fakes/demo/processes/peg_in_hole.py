@@ -17,7 +17,7 @@ UNSOLVED_PERCENT = 2.0
 what the arm presses with."""
 
 
-def _next_part(control: Control) -> None:
+def _next_part(control: Control, _cell: Path) -> None:
     control.request("load")
 
 
@@ -43,7 +43,7 @@ class PegInHoleDemo(Demo):
 
     def prepare(self, control: Control) -> None:
         """The next part and the next face, with what was injected into them."""
-        _next_part(control)
+        control.request("load")
 
     def judge(self, evidence: Evidence) -> Judgement:
         """Good is a peg that sits in its own hole, did not slip, and was never pressed too hard."""

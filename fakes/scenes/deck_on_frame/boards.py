@@ -1,10 +1,13 @@
 """The boards of the calibrations: discs of board P, and where the operator's hands put them."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.scenario_file.sections import Optics, StereoRig
 from fakes.scenes.deck_on_frame.scenario import DeckScenario, TargetBoard
+from fakes.world.arm import forward, nominal_links
 from fakes.world.frames import MM, displacement, from_written, stream
 from fakes.world.scene import SceneDisc
 
@@ -27,22 +30,31 @@ def board_discs(board: TargetBoard) -> tuple[SceneDisc, ...]:
     )
 
 
-def measuring_flange(scenario: DeckScenario, head: str) -> RigidTransform:
-    """cell_T_flange of the robot that carries a head, at its taught measuring pose."""
+def measuring_flange(
+    scenario: DeckScenario, head: str, joints_deg: Sequence[float] | None = None
+) -> RigidTransform:
+    """cell_T_flange of the robot that carries a head, where it measures: at these joints of the
+    nominal arm, without them at the pose of the scenario."""
     carrier = scenario.stereo_cameras[head].carried_by
     assert carrier is not None  # the model of the scene demands it
-    return from_written(scenario.taught[carrier]["measure"])
+    if joints_deg is None:
+        return from_written(scenario.taught[carrier]["measure"])
+    robot = scenario.robots[carrier]
+    base_T_flange = forward(nominal_links(robot.chain_mm), np.deg2rad(joints_deg))
+    return from_written(robot.base_mm_deg) * base_T_flange
 
 
-def target_board_pose(scenario: DeckScenario, seed: int, head: str, number: int) -> RigidTransform:
-    """cell_T_board of board P, roughly under a head, its x along the rows of the head's images.
+def target_board_pose(
+    scenario: DeckScenario, seed: int, head: str, number: int, flange: RigidTransform
+) -> RigidTransform:
+    """cell_T_board of board P, roughly under a head whose arm has its flange at ``flange``, its x
+    along the rows of the head's images.
 
     Not over the middle of the holes that the head measures: those may lie to one side of its
     pictures, where the outer discs of the board would be out of sight.
     """
     board, rng = scenario.target_board, stream(seed, "target board", head, number)
     frame_T_cell = from_written(scenario.parts.frame_mm_deg).inv()
-    flange = measuring_flange(scenario, head)
     flange_x, looks = flange.rotation.apply([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     above = frame_T_cell.apply(flange.translation)[2] - board.height_mm * MM
     middle = flange.translation - looks * above / frame_T_cell.rotation.apply(looks)[2]

@@ -1,6 +1,6 @@
 """A deck in the gripper of a robot, over the frame that it is to be mated with, as a scene."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -84,16 +84,23 @@ class DeckOnFrame(World[DeckScenario]):
         )
         self.rebuild()
 
-    def place_target_board(self, head: str, number: int) -> None:
-        """Lay board P under a head; each number is another placement."""
-        pose = target_board_pose(self.scenario, self.seed, self._head(head), number)
+    def place_target_board(
+        self, head: str, number: int, joints_deg: Sequence[float] | None = None
+    ) -> None:
+        """Lay board P under a head, where it measures (``measuring_flange``); each number is
+        another placement."""
+        flange = measuring_flange(self.scenario, self._head(head), joints_deg)
+        pose = target_board_pose(self.scenario, self.seed, head, number, flange)
         self.placed = replace(self.placed, target_board=pose)
 
-    def place_chessboard(self, head: str, number: int) -> None:
-        """Lay the chessboard where a head measures; each number is another placement."""
+    def place_chessboard(
+        self, head: str, number: int, joints_deg: Sequence[float] | None = None
+    ) -> None:
+        """Lay the chessboard where a head measures (``measuring_flange``); each number is another
+        placement."""
         view = chessboard_view(self.scenario, self.seed, self._head(head), number)
         flange_T_camera = self.truth.cameras[head].mount_T_camera
-        station = measuring_flange(self.scenario, head) * flange_T_camera
+        station = measuring_flange(self.scenario, head, joints_deg) * flange_T_camera
         self.placed = replace(self.placed, chessboard=station * view)
 
     def remove_boards(self) -> None:
@@ -252,10 +259,10 @@ def deck_payload(
     )
 
 
-def _placing(place: Callable[[str, int], None]) -> Command:
+def _placing(place: Callable[[str, int, Sequence[float] | None], None]) -> Command:
     """A command that puts a board under a head; another number is another placement."""
 
-    def command(head: str, number: int = 0) -> None:
-        place(head, int(number))
+    def command(head: str, number: int = 0, joints_deg: Sequence[float] | None = None) -> None:
+        place(head, int(number), joints_deg)
 
     return command

@@ -18,7 +18,7 @@ def test_a_main_arm_that_was_mastered_anew(own: OwnCell) -> None:
     daemon.ready()
     base_frame = next(procedure for procedure in PROCEDURES if procedure.number == 103)
     with own.control() as control:
-        base_frame.prepare(control)
+        base_frame.prepare(control, own.cell)
         # As a fresh cell is: with the reference that is shipped with its base frame.
         plc = own.plc("--mode", "maintenance", "--recipe", "109")
         assert plc.end(120) == 0, plc.stdout

@@ -126,7 +126,7 @@ def test_the_bench_does_what_the_operator_prepares(bench_scenario: BenchScenario
     bench = Bench(AntennaBench(bench_scenario, 1))
     boards = {}
     for procedure in AntennaModuleDemo.procedures:
-        procedure.prepare(bench)
+        procedure.prepare(bench, AntennaModuleDemo.cell)
         boards[procedure.number] = bench.world.operator.board_at
     assert boards == {
         201: "table", 202: "flange", 203: "table", 204: "flange", 205: None, 206: None,

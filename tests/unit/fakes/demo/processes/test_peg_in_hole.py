@@ -106,7 +106,7 @@ def test_every_job_begins_with_the_next_part() -> None:
     PegInHoleDemo().prepare(Hands())
     assert asked == ["load"]
     (loop,) = PegInHoleDemo.procedures
-    loop.prepare(Hands())
+    loop.prepare(Hands(), PegInHoleDemo.cell)
     assert (loop.number, asked) == (301, ["load", "load"])
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from fakes.scenes.deck_on_frame.boards import measuring_flange
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 from fakes.world.scene import (
@@ -86,6 +87,35 @@ def test_all_of_the_chessboard_is_in_both_images(scenario: DeckScenario, head: s
         camera_T_board = chessboard.camera_T_board
         assert in_both(scene.optics, camera_T_board.apply(outer), 2)
         assert camera_T_board.rotation.as_matrix()[2, 2] < -0.8
+
+
+PLANNED_DEG = {
+    "aux_1": (4.0, -68.6635, 96.1683, -21.9882, 65.7157, -166.2799),
+    "aux_2": (1.213, -59.3858, 82.6562, -13.8122, 81.7467, -84.9764),
+}
+"""As `cellctl plan viewpoints` gave them: 150 mm beside the taught poses, tilted, one rolled by 89
+degrees."""
+
+
+@pytest.mark.parametrize(("head", "robot"), [("head_1", "aux_1"), ("head_2", "aux_2")])
+def test_boards_lie_where_the_head_measures_and_not_where_the_scenario_has_it(
+    scenario: DeckScenario, head: str, robot: str
+) -> None:
+    world = measuring(scenario, 1)
+    joints_deg = PLANNED_DEG[robot]
+    mount = world.truth.cameras[head].mount_T_camera
+    stand = measuring_flange(scenario, head, joints_deg) * mount
+    world.place_chessboard(head, 0, joints_deg)
+    assert world.placed.chessboard is not None
+    depth_m = (stand.inv() * world.placed.chessboard).translation[2]
+    # The very view that the head has of it at the scenario's pose.
+    there = world.placed.chessboard
+    world.place_chessboard(head, 0)
+    assert world.placed.chessboard is not None
+    taught = measuring_flange(scenario, head) * mount
+    usual = taught.inv() * world.placed.chessboard
+    assert np.allclose((stand.inv() * there).as_matrix(), usual.as_matrix(), atol=1e-9)
+    assert depth_m == pytest.approx(0.5, abs=0.05)
 
 
 @pytest.mark.parametrize("head", HEADS)
