@@ -185,7 +185,7 @@ def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
     """Places that a template leaves to whoever commissions the cell."""
     # The daemon takes such a file, which the programs that rehearse a cell also do; whoever checks
     # it before a first start must not be told that it is good.
-    for number in left_open(cell_file.read_text(encoding="utf-8")):
+    for number in left_open(cell_file.read_text(encoding="utf-8-sig")):
         allowed = "the value of this cell, and the mark taken away"
         yield ConfigIssue("(mark of the template)", FILL_IN, allowed, line=number)
 

@@ -87,6 +87,11 @@ def sensor_rate_hz(sensor: ForceSensorConfig) -> float:
     return float(settings.rate_hz)
 
 
+LEAST_RATE_HZ = 100.0
+"""A tenth of a guard's usual rate: at 10 ms from sample to sample an arm at the speed of a touch
+(below 1 mm/s) has gone a hundredth of a millimetre, at 100 ms enough for the whole limit."""
+
+
 def least_stale_ms(sensor: ForceSensorConfig) -> float:
     """Silence below this is the sensor's own pace: two samples."""
     return 2e3 / sensor_rate_hz(sensor)

@@ -13,10 +13,13 @@ class WrittenValue:
     value: str
     line: int | None = None
     """Line in which the key stands; None for another file."""
+    allowed: str = ""
+    """What it would have to be with all others as they are; empty where that is not known."""
 
     def __str__(self) -> str:
         place = "" if self.line is None else f"line {self.line}: "
-        return f"{place}{self.key} = {self.value}"
+        wanted = f": {self.allowed}" if self.allowed else ""
+        return f"{place}{self.key} = {self.value}{wanted}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -80,7 +80,7 @@ def placed(found: Iterable[ConfigIssue], lines: dict[str, int]) -> list[ConfigIs
         replace(
             issue,
             line=line_of(issue.key, lines),
-            against=tuple(replace(one, line=lines.get(one.key)) for one in issue.against),
+            against=tuple(replace(one, line=line_of(one.key, lines)) for one in issue.against),
         )
         for issue in dict.fromkeys(found)
     ]
@@ -177,7 +177,8 @@ def _of_another_device(issue: ConfigIssue, raw: Mapping[str, Any]) -> ConfigIssu
 
 def _read(path: Path) -> str:
     try:
-        return path.read_text(encoding="utf-8")
+        # Editors of Windows put a mark before the first character of a file.
+        return path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
 

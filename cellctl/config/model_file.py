@@ -26,7 +26,7 @@ def stated_bases(cell_file: Path) -> Mapping[str, WrittenPose]:
     """``cell_T_base`` of each robot in the model of a cell file; empty where there is no model, or
     one that planning would refuse."""
     try:
-        raw = tomllib.loads(model_path(cell_file).read_text(encoding="utf-8"))
+        raw = tomllib.loads(model_path(cell_file).read_text(encoding="utf-8-sig"))
         arms = _Arms.model_validate(raw)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, ValidationError):
         return {}

@@ -134,7 +134,7 @@ def write_pose(cell_file: Path, robot: str, pose: str, values_deg: Sequence[floa
     ``FileInvalid`` when there is no place for the pose, ``OSError``.
     """
     remark = f"taught {utc_now():%Y-%m-%d %H:%M} UTC"
-    before = cell_file.read_text(encoding="utf-8")
+    before = cell_file.read_text(encoding="utf-8-sig")
     after = with_pose(before, robot, pose, values_deg, remark)
     known = {(one.key, one.value) for one in problems_before_commissioning(cell_file, before)}
     found = problems_before_commissioning(cell_file, after)

@@ -47,7 +47,7 @@ def paths(
     for fault in faults:
         console.print(str(fault))
     if out is not None:
-        text = cell_file.read_text(encoding="utf-8")
+        text = cell_file.read_text(encoding="utf-8-sig")
         write_file(out, with_ways_written(text, planned).encode())
         console.print(f"written: {out}; read it, and try each way at low speed")
     if faults:

@@ -41,6 +41,6 @@ def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) ->
     if not planned:
         raise NoViewsStated(f"{cell_file}")
     if out is not None:
-        text = cell_file.read_text(encoding="utf-8")
+        text = cell_file.read_text(encoding="utf-8-sig")
         write_file(out, with_viewpoints_written(text, planned).encode())
         console.print(f"written: {out}; read it, try each pose at low speed, and calibrate there")

@@ -2,14 +2,21 @@
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from pydantic import ValidationError
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.bounds.bound import at_least
 from cellctl.config.checks.exposures import exposure_issues
 from cellctl.config.checks.outputs import output_issues
-from cellctl.config.driver_settings import least_stale_ms, robot_driver
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.driver_settings import (
+    LEAST_RATE_HZ,
+    least_stale_ms,
+    robot_driver,
+    sensor_rate_hz,
+)
+from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.errors.config import MixedSimulation, UnknownDriver
 from cellctl.spelling import nearest
 
@@ -38,9 +45,15 @@ def _names(cell: CellConfig) -> Iterator[ConfigIssue]:
 
 
 def _recipe_ids(cell: CellConfig) -> Iterator[ConfigIssue]:
-    ids = [recipe.id for recipe in cell.recipes]
-    if len(set(ids)) != len(ids):
-        yield ConfigIssue("recipes", str(ids), f"recipe ids must differ, got {ids}")
+    first: dict[int, int] = {}
+    for index, recipe in enumerate(cell.recipes):
+        other = first.setdefault(recipe.id, index)
+        if other != index:
+            name = cell.recipes[other].name
+            allowed = f"recipe ids must differ; recipe '{name}' has {recipe.id} already"
+            value = f"{recipe.id} of recipe '{recipe.name}'"
+            against = (WrittenValue(f"recipes.{other}.id", f"{recipe.id} of recipe '{name}'"),)
+            yield ConfigIssue(f"recipes.{index}.id", value, allowed, against=against)
 
 
 def _carriers(cell: CellConfig) -> Iterator[ConfigIssue]:
@@ -92,10 +105,23 @@ def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssu
             continue  # its rate is not known
         # Two samples: the arrival of one sample jitters, so a limit of one would trip on an even
         # stream.
-        least_ms = least_stale_ms(sensor)
-        if sensor.stale_ms < least_ms:
-            allowed = f"at least {least_ms:g}, two samples at the sensor's rate"
-            yield ConfigIssue(f"{key}.stale_ms", f"{sensor.stale_ms:g}", allowed)
+        least_ms, rate_hz = least_stale_ms(sensor), sensor_rate_hz(sensor)
+        if sensor.stale_ms >= least_ms:
+            continue
+        stale = WrittenValue(f"{key}.stale_ms", f"{sensor.stale_ms:g}", allowed=at_least(least_ms))
+        rate = WrittenValue(f"{key}.settings.rate_hz", f"{rate_hz:g}")
+        if rate_hz < LEAST_RATE_HZ:
+            # A longer silence would only make the guard blind.
+            allowed = (
+                f"at least {LEAST_RATE_HZ:g} samples a second, for the guard to stop in time; two "
+                f"samples of this rate are {least_ms:g} ms apart, and stale_ms = "
+                f"{sensor.stale_ms:g}"
+            )
+            yield ConfigIssue(rate.key, rate.value, allowed)
+            continue
+        faster = replace(rate, allowed=at_least(2e3 / sensor.stale_ms))
+        allowed = f"{stale.allowed}, two samples at the sensor's rate"
+        yield ConfigIssue(stale.key, stale.value, allowed, against=(faster,))
 
 
 def _simulation(cell: CellConfig) -> Iterator[ConfigIssue]:

@@ -1,15 +1,15 @@
 """Holds a taught pose of an arm against the place over which its tool must be there."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue, WrittenValue
-from cellctl.geometry.pose import MM, Array
+from cellctl.geometry.pose import MM, Array, pose_from_xyzabc, pose_to_xyzabc
 
 BESIDE_MM, TURNED_DEG = 50.0, 10.0
 """A pose is taught by eye over a place that a drawing gives: nearer than this it is the same."""
@@ -23,6 +23,41 @@ ROUND_DEG = 8.0
 """Turn about its own axis of a round tool that was jogged by eye; slips are of 10 deg and more."""
 
 
+_NOTHING = RigidTransform.identity()
+
+_HALF_TURN_DEG = 180.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Link:
+    """A written pose from which a tool, or its place, follows: ``before * pose * after``."""
+
+    key: str
+    written: Sequence[float]
+    """mm and degrees, shape (6,)."""
+    before: RigidTransform = _NOTHING
+    after: RigidTransform = _NOTHING
+
+    def value(
+        self, whole: RigidTransform, is_good: Callable[[RigidTransform], bool]
+    ) -> WrittenValue:
+        """As it is written, with what it would have to be for ``whole`` to follow from it, or
+        another one that is good and needs another turn only."""
+        pose = self.before.inv() * whole * self.after.inv()
+        written_m = pose_from_xyzabc(self.written).translation
+        turned = RigidTransform.from_components(written_m, pose.rotation)
+        if is_good(self.before * turned * self.after):
+            pose = turned
+        return WrittenValue(self.key, str(list(self.written)), allowed=about(pose))
+
+
+def about(pose: RigidTransform) -> str:
+    """A pose in its written form, as what another value would have to be."""
+    rounded = np.round(pose_to_xyzabc(pose), 1) + 0.0
+    rounded[3:] = np.where(rounded[3:] == -_HALF_TURN_DEG, _HALF_TURN_DEG, rounded[3:])
+    return f"about {rounded.tolist()}"
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Over:
     """A place, and the pose that was taught over it."""
@@ -34,8 +69,10 @@ class Over:
     """Pose of the tool at the place itself; its z axis leads to it."""
     key: str
     """Of the place in the recipe, or the calibration that has it."""
-    written: tuple[WrittenValue, ...]
-    """The values that the place and the tool follow from."""
+    of_place: tuple[Link, ...] = ()
+    """The values that the place follows from."""
+    of_tool: tuple[Link, ...] = ()
+    """The values that the tool follows from."""
     height_mm: float | None = None
     """How high over the place the tool was when the pose was taught; None where nobody measured."""
     any_turn: bool = False
@@ -69,12 +106,11 @@ def over_place_issues(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:
         return
     tool_T_taught = over.base_T_tool.inv() * base_T_flange * over.flange_T_tool
     x_mm, y_mm, z_mm = (float(one) for one in tool_T_taught.translation / MM)
+    if _is_over(over, tool_T_taught):
+        return
     turned_deg = _turned_deg(tool_T_taught, over)
     beside_mm, height_mm = float(np.hypot(x_mm, y_mm)), -z_mm
     most_mm, most_deg, least_height_mm, most_height_mm = _bounds(over)
-    high_enough = least_height_mm <= height_mm <= most_height_mm
-    if beside_mm <= most_mm and high_enough and turned_deg <= most_deg:
-        return
     key = f"robots.{over.robot}.poses_deg.{over.pose}"
     allowed = (
         f"over the place that the recipe gives, {least_height_mm:g} to {most_height_mm:g} mm, at "
@@ -83,12 +119,55 @@ def over_place_issues(cell: CellConfig, over: Over) -> Iterator[ConfigIssue]:
         "deg"
     )
     joints = str(list(cell.robots[over.robot].poses_deg[over.pose]))
-    yield ConfigIssue(key, joints, allowed, against=(*over.written, *_height(over)))
+    against = (*_links(over, base_T_flange, tool_T_taught), *_height(over, height_mm))
+    yield ConfigIssue(key, joints, allowed, against=against)
 
 
-def _height(over: Over) -> Iterator[WrittenValue]:
+def _links(
+    over: Over, base_T_flange: RigidTransform, tool_T_taught: RigidTransform
+) -> Iterator[WrittenValue]:
+    """Every written pose that takes part, with what it would have to be."""
+    meant = _nearest_good(over, tool_T_taught)
+    place = base_T_flange * over.flange_T_tool * meant.inv()
+    tool = base_T_flange.inv() * over.base_T_tool * meant
+
+    def is_place(base_T_tool: RigidTransform) -> bool:
+        return _is_over(over, base_T_tool.inv() * base_T_flange * over.flange_T_tool)
+
+    def is_tool(flange_T_tool: RigidTransform) -> bool:
+        return _is_over(over, over.base_T_tool.inv() * base_T_flange * flange_T_tool)
+
+    yield from (link.value(place, is_place) for link in over.of_place)
+    yield from (link.value(tool, is_tool) for link in over.of_tool)
+
+
+def _is_over(over: Over, tool_T_taught: RigidTransform) -> bool:
+    x_mm, y_mm, z_mm = tool_T_taught.translation / MM
+    most_mm, most_deg, least_height_mm, most_height_mm = _bounds(over)
+    is_high_enough = bool(least_height_mm <= -z_mm <= most_height_mm)
+    is_near = bool(np.hypot(x_mm, y_mm) <= most_mm)
+    return is_high_enough and is_near and _turned_deg(tool_T_taught, over) <= most_deg
+
+
+def _nearest_good(over: Over, tool_T_taught: RigidTransform) -> RigidTransform:
+    """The taught tool seen from its place, with only that changed which is out of bounds."""
+    x_mm, y_mm, z_mm = tool_T_taught.translation / MM
+    most_mm, most_deg, least_height_mm, most_height_mm = _bounds(over)
+    if np.hypot(x_mm, y_mm) > most_mm:
+        x_mm = y_mm = 0.0
+    if not least_height_mm <= -z_mm <= most_height_mm:
+        z_mm = -(least_height_mm + most_height_mm) / 2.0
+    turn = tool_T_taught.rotation
+    if _turned_deg(tool_T_taught, over) > most_deg:
+        turn = Rotation.identity()
+    return RigidTransform.from_components(np.array([x_mm, y_mm, z_mm]) * MM, turn)
+
+
+def _height(over: Over, height_mm: float) -> Iterator[WrittenValue]:
     if over.height_mm is not None:
-        yield WrittenValue(f"{over.key}.taught_above_mm", f"{over.height_mm:g}")
+        wanted = f"about {height_mm:.0f}" if height_mm > 0.0 else ""
+        key = f"{over.key}.taught_above_mm"
+        yield WrittenValue(key, f"{over.height_mm:g}", allowed=wanted)
 
 
 def _bounds(over: Over) -> tuple[float, float, float, float]:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.bounds.bound import Bound
 
 _ALONG = 0.9
 """Share of a tool's length that lies along the axis of the flange where it is straight."""

@@ -2,12 +2,12 @@
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails
 
+from cellctl.config.document.words import entries, words
 from cellctl.config.issue import ConfigIssue
 from cellctl.spelling import nearest
 
@@ -39,11 +39,21 @@ def model_issues(
     # pydantic calls a list with one bad entry "too short", in addition to what is wrong with the
     # entry. That would send the user to look for a missing one.
     parents = {item["loc"][:depth] for item in items for depth in range(1, len(item["loc"]))}
+    short: set[tuple[int | str, ...]] = set()
     for item in items:
         loc = item["loc"]
         if item["type"] == "too_short" and loc in parents:
             continue  # it has entries; what is wrong with them is reported by itself
         key = prefix + ".".join(str(part) for part in loc if part != "[key]")
+        if item["type"] == "missing" and isinstance(loc[-1], int):
+            # A row that is too short has one mistake, however many of its entries are missing.
+            if loc[:-1] in short:
+                continue
+            short.add(loc[:-1])
+            row, node = _at(raw, loc[:-1], ()), _node(schema, loc[:-1])
+            key = key.rpartition(".")[0]
+            found.append(ConfigIssue(key or "(file)", shorten(repr(row)), entries(node, row)))
+            continue
         missing = item["type"] == "missing"
         value = "(missing)" if missing else shorten(repr(_at(raw, loc, item["input"])))
         key = key.rstrip(".")
@@ -58,7 +68,7 @@ def model_issues(
             node = (
                 _node(schema, loc[:-2]).get("propertyNames", {}) if of_keys else _node(schema, loc)
             )
-            allowed = _words(item, node)
+            allowed = words(item, node)
         found.append(ConfigIssue(key or "(file)", value, allowed))
     return found
 
@@ -81,39 +91,6 @@ def _named_in(message: str, section: object, shown: str) -> tuple[str, str]:
     first, *others = dict.fromkeys(named)
     also = "".join(f", {name} = {section[name]!r}" for name in others)
     return first, shorten(f"{section[first]!r}{also}")
-
-
-def _words(item: ErrorDetails, node: Mapping[str, Any]) -> str:
-    """pydantic's message, or better words where it speaks of patterns, objects and tuples."""
-    kind = item["type"]
-    if kind == "string_pattern_mismatch":
-        return _of_the_form(str(item["input"]), item["ctx"]["pattern"], node.get("examples", ()))
-    if kind == "too_long":
-        length, most = item["ctx"]["actual_length"], item["ctx"]["max_length"]
-        comma = "; a number has a decimal point, no comma" if length == 2 * most else ""
-        return f"at most {most} entries, these are {length}{comma}"
-    if kind in ("model_type", "model_attributes_type", "dict_type"):
-        keys = ", ".join(f"{key} = …" for key in node.get("properties", {})) or "name = …"
-        return f"a table: {{ {keys} }}"
-    return item["msg"] + _bounds(node)
-
-
-def _of_the_form(written: str, pattern: str, examples: Sequence[str]) -> str:
-    """What is shown in place of a pattern: an example of it, and what was probably meant."""
-    simple = re.sub(r"[^A-Za-z0-9]+", "_", written).strip("_")
-    slips: tuple[str, ...] = (
-        written.lower(),
-        written.upper(),
-        simple,
-        simple.lower(),
-        simple.upper(),
-    )
-    digits = re.fullmatch(r"(\d+)\D+(\d+)\D*", written)
-    if digits:
-        slips = (*slips, f"{digits[1]}x{digits[2]}")
-    meant = next((f"did you mean {one!r}? " for one in slips if re.match(pattern, one)), "")
-    form = f"a text of the form {examples[0]!r}" if examples else f"a text that fits {pattern}"
-    return f"{meant}{form}"
 
 
 def _other_key(name: str, node: Mapping[str, Any]) -> str:
@@ -160,14 +137,3 @@ def _resolved(node: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str
 
 def _options(node: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     return [option for option in node.get("anyOf", []) if option.get("type") != "null"]
-
-
-def _bounds(node: Mapping[str, Any]) -> str:
-    """Both limits of a number: pydantic names the one that was passed only."""
-    lower = node.get("minimum", node.get("exclusiveMinimum"))
-    upper = node.get("maximum", node.get("exclusiveMaximum"))
-    if lower is None or upper is None:
-        return ""
-    above = "more than " if "exclusiveMinimum" in node else ""
-    below = "less than " if "exclusiveMaximum" in node else ""
-    return f" (allowed: {above}{lower:g} to {below}{upper:g})"

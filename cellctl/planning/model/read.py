@@ -59,7 +59,7 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
 
 def _document(path: Path) -> ModelDocument:
     try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8"))
+        raw = tomllib.loads(path.read_text(encoding="utf-8-sig"))
     except FileNotFoundError as error:
         raise ConfigUnreadable(
             f"{path}: this cell has no model yet. Write one: where its arms stand, their bodies "

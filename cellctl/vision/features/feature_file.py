@@ -46,7 +46,7 @@ def read_features(path: Path) -> FeatureFile:
 def parse_features(content: bytes, name: str) -> FeatureFile:
     """The content of a feature file of that name; raises ``FeatureFileInvalid``."""
     try:
-        data = tomllib.loads(content.decode())
+        data = tomllib.loads(content.decode("utf-8-sig"))
     except ValueError as error:
         raise FeatureFileInvalid(f"{name} is not TOML: {error}") from error
     try:

@@ -64,8 +64,8 @@ TYPES = (
         "plc.heartbeat_timeout_s",
         "0.5 to 10",
     ),
-    deck(_HOME, "home = [0.0, -90.0, 90.0, 0.0, 90.0]", "robots.main.poses_deg.home.5", "required"),
-    _antenna('name = "', "name = 7 # ", "name", "string"),
+    deck(_HOME, "home = [0.0, -90.0, 90.0, 0.0, 90.0]", "robots.main.poses_deg.home", "here are 5"),
+    _antenna('name = "', "name = 7 # ", "name", "a text"),
 )
 """Numbers in quotes, beyond their range, of the wrong kind."""
 

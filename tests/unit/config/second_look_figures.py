@@ -188,7 +188,7 @@ OTHERS = (
         'driver = "siasun-sjl"\nsimulated = true\nlinear_speed_mm_s = 250.0',
         'driver = "siasun-rpc"\nsimulated = true\nlinear_speed_mm_s = 250.0',
         "robots.aux_1.settings.host",
-        "required",
+        "needed here: a text",
     ),
     deck(
         'host = "127.0.0.1", port = 7101',

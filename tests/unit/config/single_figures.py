@@ -76,7 +76,7 @@ _FORCES = (
     _connector("pull_n = 8.0", "pull_n = 0.8", "recipes.0.seat.pull_n", "proves nothing"),
 )
 _LOOP = (
-    _pin("stiffness_n_mm = 120.0", "stiffness_n_mm = 12.0", f"{_PEG}.stiffness_n_mm", "98.04"),
+    _pin("stiffness_n_mm = 120.0", "stiffness_n_mm = 12.0", f"{_PEG}.stiffness_n_mm", "98.05"),
     _pin("dead_time_ms = 60.0", "dead_time_ms = 20.0", f"{_PEG}.dead_time_ms", "25.74"),
     _pin("dead_time_ms = 60.0", "dead_time_ms = 6.0", f"{_PEG}.dead_time_ms", "two setpoints"),
     _pin(

@@ -55,7 +55,7 @@ def test_all_errors_are_reported_together(tmp_path: Path) -> None:
         "recipes.0.deck_thickness_mm",
         "recipes.0.deck_thicknes_mm",
     }
-    assert "greater than 0" in found["recipes.0.pose_correction.threshold_mm"].allowed
+    assert "more than 0" in found["recipes.0.pose_correction.threshold_mm"].allowed
     assert found["recipes.0.pose_correction.threshold_mm"].value == "-1.0"
     assert found["recipes.0.deck_thickness_mm"].value == "(missing)"
 

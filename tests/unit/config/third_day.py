@@ -283,9 +283,8 @@ _LIMITS = (
     _pin(
         "depth_mm = 12.0",
         "depth_mm = 120.0",
-        "recipes.0.base_T_hole.pose",
+        "recipes.0.fit.depth_mm",
         "at the seat",
-        at_the_other=True,
     ),
     _pin(
         "peg_radius_mm = 3.0",

@@ -5,12 +5,9 @@ from collections.abc import Iterator, Set
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import ForceSensorConfig
-from cellctl.config.driver_settings import measuring_range, sensor_rate_hz
+from cellctl.config.driver_settings import LEAST_RATE_HZ, measuring_range, sensor_rate_hz
 from cellctl.config.issue import ConfigIssue
 
-_LEAST_RATE_HZ = 100.0
-"""A tenth of a guard's usual rate: at 10 ms from sample to sample an arm at the speed of a touch
-(below 1 mm/s) has gone a hundredth of a millimetre, at 100 ms enough for the whole limit."""
 _MOST_OVER_OTHERS = 5.0
 """Greatest ratio of two ranges in a sensor's data sheet: along its axis it carries about twice as
 much as across."""
@@ -34,8 +31,8 @@ def sensor_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
         if path in bad:
             continue
         rate_hz = sensor_rate_hz(sensor)
-        if rate_hz < _LEAST_RATE_HZ:
-            allowed = f"at least {_LEAST_RATE_HZ:g} samples a second, for the guard to stop in time"
+        if rate_hz < LEAST_RATE_HZ:
+            allowed = f"at least {LEAST_RATE_HZ:g} samples a second, for the guard to stop in time"
             yield ConfigIssue(f"{path}.settings.rate_hz", f"{rate_hz:g}", allowed)
         yield from _range(path, sensor)
 

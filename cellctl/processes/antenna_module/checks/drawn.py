@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import Bound, bound_issues
+from cellctl.config.checks.bounds.bound import Bound, bound_issues
 from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.checks.plausible.sensors import NOISE_SHARE
 from cellctl.config.driver_settings import measuring_range

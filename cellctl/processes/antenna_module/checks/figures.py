@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.bounds.bound import Bound
 from cellctl.config.driver_settings import reach_m
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM

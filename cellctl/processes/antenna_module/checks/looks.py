@@ -15,8 +15,8 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.pose_record import pose_from_record
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import Over, over_place_issues
-from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.config.checks.over_places import Link, Over, over_place_issues
+from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
 from cellctl.processes.antenna_module.roles import (
@@ -47,7 +47,7 @@ def look_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
     written = cell.cameras[name].flange_T_camera
     if written is None:
         return
-    camera = WrittenValue(f"cameras.{name}.flange_T_camera", str(list(written)))
+    camera = Link(f"cameras.{name}.flange_T_camera", written)
     top, itself = pose_from_xyzabc(recipe.plug_T_top), RigidTransform.identity()
     places: dict[str, tuple[str, Place, RigidTransform]] = {
         TRAY_LOOK: (f"{key}.base_T_tray_plug", recipe.base_T_tray_plug, top),
@@ -59,9 +59,20 @@ def look_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
         places[REFERENCE_LOOK] = (where, reference.base_T_plate, itself)
     for pose, (where, place, place_T_seen) in places.items():
         base_T_seen = pose_from_xyzabc(place.pose) * place_T_seen * OVER
-        against = (WrittenValue(f"{where}.pose", str(list(place.pose))), camera)
-        flange_T_camera = pose_from_xyzabc(written)
-        over = Over(arm, pose, flange_T_camera, base_T_seen, where, against, any_turn=True)
+        links = [Link(f"{where}.pose", place.pose, after=place_T_seen * OVER)]
+        if pose == TRAY_LOOK:
+            base_T_plug = pose_from_xyzabc(place.pose)
+            links.append(Link(f"{key}.plug_T_top", recipe.plug_T_top, base_T_plug, OVER))
+        over = Over(
+            arm,
+            pose,
+            pose_from_xyzabc(written),
+            base_T_seen,
+            where,
+            tuple(links),
+            (camera,),
+            any_turn=True,
+        )
         yield from over_place_issues(cell, over)
 
 
@@ -85,7 +96,7 @@ def _fixed_camera(cell: CellConfig, recipe: AntennaRecipe, folder: Path) -> Iter
     }
     for pose, flange_T_shown in shown.items():
         place = base_T_camera * OVER
-        over = Over(arm, pose, flange_T_shown, place, _FIXED_CAMERA, (), any_turn=True)
+        over = Over(arm, pose, flange_T_shown, place, _FIXED_CAMERA, any_turn=True)
         yield from _remarked(cell, over, _FIXED_CAMERA)
 
 
@@ -110,7 +121,7 @@ def _flange_camera(cell: CellConfig, recipe: AntennaRecipe, folder: Path) -> Ite
     # A board has no side that it shows to the camera: its z may point either way.
     to_board = board if board.rotation.as_matrix()[2, 2] < 0.0 else board * OVER
     arm = recipe.device(ARM)
-    over = Over(arm, BOARD_LOOK, measured, to_board, _FLANGE_CAMERA, (), any_turn=True)
+    over = Over(arm, BOARD_LOOK, measured, to_board, _FLANGE_CAMERA, any_turn=True)
     yield from _remarked(cell, over, _FLANGE_CAMERA)
 
 

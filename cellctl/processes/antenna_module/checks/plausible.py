@@ -1,15 +1,18 @@
 """Places of an antenna recipe that the arm cannot come to, and figures that no arm has."""
 
 from collections.abc import Iterator
+from functools import partial
 from math import degrees, dist
 from pathlib import Path
 from typing import cast
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import bound_issues
+from cellctl.config.checks.bounds.bound import Bound
+from cellctl.config.checks.bounds.contradiction import contradictions
 from cellctl.config.checks.flange_places import flange_place_issues
 from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.checks.above import above_issues
 from cellctl.processes.antenna_module.checks.drawn import (
@@ -34,21 +37,31 @@ def plausible_issues(
     cell: CellConfig, recipe: AntennaRecipe, key: str, folder: Path
 ) -> Iterator[ConfigIssue]:
     """Called with a recipe in which nothing else is wrong."""
-    settings, arm = cast(AntennaSettings, cell.processes[recipe.process]), recipe.device(ARM)
+    settings = _settings(cell, recipe)
     where = f"processes.{recipe.process}"
     yield from one_file_twice(recipe, key, settings.reference, where)
-    yield from bound_issues(contact_bounds(recipe, key, folder))
     yield from force_issues(cell, recipe, key, folder)
     yield from pull_issues(cell, recipe, key)
-    yield from bound_issues(arm_bounds(cell, arm, settings, where))
-    yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_plug))
-    yield from bound_issues(board_bounds(cell, settings, where, folder))
+    yield from contradictions(cell, recipe, key, partial(_bounds, key=key, folder=folder))
     yield from _marks(recipe, key)
     places = list(_places(cell, recipe, key))
     yield from places
     if not places:
         yield from above_issues(cell, recipe, key)
         yield from look_issues(cell, recipe, key)
+
+
+def _bounds(cell: CellConfig, recipe: Recipe, key: str, folder: Path) -> Iterator[Bound]:
+    known, settings = cast(AntennaRecipe, recipe), _settings(cell, recipe)
+    where = f"processes.{recipe.process}"
+    yield from contact_bounds(known, key, folder)
+    yield from arm_bounds(cell, known.device(ARM), settings, where)
+    yield from sensor_bounds(cell, known.device(FORCE), known.flange_T_plug)
+    yield from board_bounds(cell, settings, where, folder)
+
+
+def _settings(cell: CellConfig, recipe: Recipe) -> AntennaSettings:
+    return cast(AntennaSettings, cell.processes[recipe.process])
 
 
 def _marks(recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
@@ -81,6 +94,7 @@ def marks_remarks(recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
 def _places(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[ConfigIssue]:
     """Tray and socket against the box of the flange."""
     plug_T_flange = pose_from_xyzabc(recipe.flange_T_plug).inv()
+    plug = WrittenValue(f"{key}.flange_T_plug", str(list(recipe.flange_T_plug)))
     places = {
         "base_T_tray_plug": ("when it picks", recipe.base_T_tray_plug.pose, None),
         "base_T_socket": ("with the plug in the socket", recipe.base_T_socket.pose, OVER),
@@ -92,6 +106,6 @@ def _places(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[Confi
         yield from flange_place_issues(
             cell,
             recipe.device(ARM),
-            (f"{key}.{name}.pose", str(list(written))),
+            (WrittenValue(f"{key}.{name}.pose", str(list(written))), plug),
             {what: base_T_plug * plug_T_flange},
         )

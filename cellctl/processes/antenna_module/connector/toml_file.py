@@ -45,7 +45,7 @@ def parse_toml(content: bytes, name: str, model: type[M], invalid: type[CellErro
 def _understood(content: bytes, model: type[Table]) -> Table:
     # A check of a cell asks for its drawings some ten times, and to compare a pattern with its
     # mirror image takes most of the time.
-    return model.model_validate(as_tuples(tomllib.loads(content.decode())))
+    return model.model_validate(as_tuples(tomllib.loads(content.decode("utf-8-sig"))))
 
 
 def read_bytes(path: Path, invalid: type[CellError]) -> bytes:

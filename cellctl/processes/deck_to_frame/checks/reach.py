@@ -6,6 +6,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.bounds.bound import Bound
+from cellctl.config.checks.flange_places import box_of
+from cellctl.config.checks.over_places import about
 from cellctl.config.driver_settings import motion_bounds, robot_driver
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.box import Box
@@ -14,6 +17,8 @@ from cellctl.processes.deck_to_frame.checks.meant_pose import STATION_POSES, mea
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.roles import DECK_MEASURE
 
+_SEATED = "seated"
+"""The place at which the deck lies on the frame, as findings name it."""
 BESIDE_MM = 100.0
 TURNED_DEG = 8.0
 """The heads measure deck and frame from one place. In a field of view of 0.3 m the holes of a head
@@ -44,9 +49,11 @@ def reach_issues(
         yield ConfigIssue(f"{key}.{name}", str(list(getattr(recipe, name))), allowed)
         return
     frame, deck = (_written(recipe, key, name) for name in STATION_POSES)
-    lower, upper = (np.round(corner / MM, 1).tolist() for corner in (box.lower_m, box.upper_m))
-    bounds = WrittenValue(f"robots.{main}.settings", f"a box from {lower} to {upper} mm")
-    yield ConfigIssue(frame.key, frame.value, found, against=(deck, bounds))
+    thickness = WrittenValue(f"{key}.deck_thickness_mm", f"{recipe.deck_thickness_mm:g}")
+    stand_off = WrittenValue(f"{key}.stand_off_mm", f"{recipe.stand_off_mm:g}")
+    heights = (thickness,) if what == _SEATED else (thickness, stand_off)
+    against = (deck, *heights, box_of(main, box))
+    yield ConfigIssue(frame.key, frame.value, found, against=against)
 
 
 def above_issues(
@@ -57,26 +64,42 @@ def above_issues(
     if base_T_flange is None:
         return
     place = frame_T_deck(recipe, base_T_flange)
-    x_mm, y_mm, z_mm = place.translation / MM
-    frame, deck = (_written(recipe, key, name) for name in STATION_POSES)
-    joints = list(cell.robots[main].poses_deg[DECK_MEASURE])
-    taught = WrittenValue(f"robots.{main}.poses_deg.{DECK_MEASURE}", str(joints))
+    x_mm, y_mm, _ = place.translation / MM
     if is_beside(place):
+        # At the same height, right below the deck.
+        base_T_deck = base_T_flange * pose_from_xyzabc(recipe.flange_T_deck)
+        above = RigidTransform.from_translation([0.0, 0.0, float(place.translation[2])])
+        frame = _written(recipe, key, "base_T_frame", base_T_deck * above.inv())
+        base_T_frame = pose_from_xyzabc(recipe.base_T_frame)
+        deck = _written(recipe, key, "flange_T_deck", base_T_flange.inv() * base_T_frame * above)
         turned_deg = np.degrees(place.rotation.magnitude())
         allowed = (
             f"below the deck at the taught pose {DECK_MEASURE}, within {BESIDE_MM:g} "
             f"mm and {TURNED_DEG:g} deg; the deck is at x {x_mm:.0f}, y {y_mm:.0f} mm of the "
             f"frame, turned by {turned_deg:.0f} deg. Or teach {DECK_MEASURE} again"
         )
-        yield ConfigIssue(frame.key, frame.value, allowed, against=(deck, taught))
-    elif z_mm < recipe.deck_thickness_mm + recipe.stand_off_mm:
-        allowed = (
-            f"at most {z_mm - recipe.stand_off_mm:.0f}: at the taught pose {DECK_MEASURE} the "
-            f"outer face of the deck is {z_mm:.0f} mm above the frame, and the stand-off stays free"
-        )
-        thickness = f"{recipe.deck_thickness_mm:g}"
-        against = (frame, deck, taught)
-        yield ConfigIssue(f"{key}.deck_thickness_mm", thickness, allowed, against=against)
+        yield ConfigIssue(frame.key, frame.value, allowed, against=(deck, _taught(cell, main)))
+
+
+def height_bounds(cell: CellConfig, main: str, recipe: DeckRecipe, key: str) -> Iterator[Bound]:
+    """The stand-off between a deck at its taught pose and the frame below it."""
+    base_T_flange = _measured_at(cell, main)
+    if base_T_flange is None or is_beside(place := frame_T_deck(recipe, base_T_flange)):
+        return
+    z_mm = float(place.translation[2]) / MM
+    why = (
+        f"at the taught pose {DECK_MEASURE} the outer face of the deck is {z_mm:.0f} mm above the "
+        "frame, and the stand-off below the deck stays free"
+    )
+    most_mm = z_mm - recipe.stand_off_mm
+    where = f"{key}.deck_thickness_mm"
+    against = (_taught(cell, main),)
+    yield Bound(where, recipe.deck_thickness_mm, why, most=most_mm, against=against)
+
+
+def _taught(cell: CellConfig, main: str) -> WrittenValue:
+    joints = list(cell.robots[main].poses_deg[DECK_MEASURE])
+    return WrittenValue(f"robots.{main}.poses_deg.{DECK_MEASURE}", str(joints))
 
 
 def _meant(
@@ -88,8 +111,11 @@ def _meant(
     return meant_pose(recipe, fits)
 
 
-def _written(recipe: DeckRecipe, key: str, name: str) -> WrittenValue:
-    return WrittenValue(f"{key}.{name}", str(list(getattr(recipe, name))))
+def _written(
+    recipe: DeckRecipe, key: str, name: str, meant: RigidTransform | None = None
+) -> WrittenValue:
+    allowed = "" if meant is None else about(meant)
+    return WrittenValue(f"{key}.{name}", str(list(getattr(recipe, name))), allowed=allowed)
 
 
 def frame_T_deck(recipe: DeckRecipe, base_T_flange: RigidTransform) -> RigidTransform:
@@ -118,7 +144,7 @@ def _outside(recipe: DeckRecipe, box: Box) -> tuple[str, Array] | None:
     there is none."""
     base_T_frame = pose_from_xyzabc(recipe.base_T_frame)
     deck_T_flange = pose_from_xyzabc(recipe.flange_T_deck).inv()
-    for what, above_mm in (("seated", 0.0), ("at the stand-off", recipe.stand_off_mm)):
+    for what, above_mm in ((_SEATED, 0.0), ("at the stand-off", recipe.stand_off_mm)):
         height_m = (recipe.deck_thickness_mm + above_mm) * MM
         seat_T_deck = RigidTransform.from_translation([0.0, 0.0, height_m])
         place_m = (base_T_frame * seat_T_deck * deck_T_flange).translation

@@ -96,7 +96,7 @@ class TaskOfCurve:
 def read_part(path: Path) -> JudgedPart:
     """Raises ``FileInvalid`` with everything that is wrong."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise FileInvalid(f"{path}: {error}") from error
     try:

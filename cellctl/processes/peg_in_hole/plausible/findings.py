@@ -1,16 +1,19 @@
 """Figures of a peg, its hole and its cell that do not go together."""
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import cast
 
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import bound_issues
-from cellctl.config.checks.flange_places import flange_place_issues
+from cellctl.config.checks.bounds.bound import Bound, at_most
+from cellctl.config.checks.bounds.contradiction import contradictions
+from cellctl.config.checks.flange_places import deepest_mm, flange_place_issues
 from cellctl.config.checks.over_places import over_place_issues
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.plausible.fit import fit_bounds
 from cellctl.processes.peg_in_hole.plausible.forces import force_bounds
@@ -29,10 +32,8 @@ def plausible_issues(
     settings = cast(PegSettings, cell.processes[recipe.process])
     places = list(_places(cell, recipe, key))
     yield from places
-    figures = list(bound_issues(fit_bounds(recipe, key)))
+    figures = list(contradictions(cell, recipe, key, partial(_bounds, key=key, folder=folder)))
     yield from figures
-    yield from bound_issues(force_bounds(cell, recipe, settings, key))
-    yield from bound_issues(loop_bounds(cell, recipe, settings, folder))
     if places or figures:
         return  # ways that follow from a wrong place or drawing would be named again
     above = list(over_place_issues(cell, over_hole(recipe, key)))
@@ -41,14 +42,29 @@ def plausible_issues(
         yield from stream_issues(cell, recipe, settings, key)
 
 
+def _bounds(cell: CellConfig, recipe: Recipe, key: str, folder: Path) -> Iterator[Bound]:
+    known, settings = cast(PegRecipe, recipe), cast(PegSettings, cell.processes[recipe.process])
+    yield from fit_bounds(known, key)
+    yield from force_bounds(cell, known, settings, key)
+    yield from loop_bounds(cell, known, settings, folder)
+
+
 def _places(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[ConfigIssue]:
     """A hole out of the arm's reach."""
     tip_T_flange = pose_from_xyzabc(recipe.flange_T_tip).inv()
-    places = {
-        what: tip_at_hole(recipe)
-        * RigidTransform.from_translation([0.0, 0.0, depth_mm * MM])
-        * tip_T_flange
-        for what, depth_mm in (("at the face", 0.0), ("at the seat", recipe.fit.depth_mm))
-    }
-    written = f"{key}.base_T_hole.pose", str(list(recipe.base_T_hole.pose))
-    yield from flange_place_issues(cell, recipe.device(ARM), written, places)
+
+    def flange_at(depth_mm: float) -> RigidTransform:
+        below = RigidTransform.from_translation([0.0, 0.0, depth_mm * MM])
+        return tip_at_hole(recipe) * below * tip_T_flange
+
+    arm, depth_mm = recipe.device(ARM), recipe.fit.depth_mm
+    hole = WrittenValue(f"{key}.base_T_hole.pose", str(list(recipe.base_T_hole.pose)))
+    tip = WrittenValue(f"{key}.flange_T_tip", str(list(recipe.flange_T_tip)))
+    at_the_face = list(flange_place_issues(cell, arm, (hole, tip), {"at the face": flange_at(0.0)}))
+    yield from at_the_face
+    if not at_the_face:
+        # The face is in reach, so the depth is wrong before the place of the hole is.
+        most_mm = deepest_mm(cell, arm, flange_at, depth_mm)
+        depth = WrittenValue(f"{key}.fit.depth_mm", f"{depth_mm:g}", allowed=at_most(most_mm))
+        seat = {"at the seat": flange_at(depth_mm)}
+        yield from flange_place_issues(cell, arm, (depth, hole, tip), seat)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from math import degrees
 
-from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.bounds.bound import Bound
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.insertion.felt import OUT_OF_BAND_N
 from cellctl.processes.peg_in_hole.insertion.resistance import ZONE_M
@@ -25,6 +25,8 @@ def fit_bounds(recipe: PegRecipe, key: str) -> Iterator[Bound]:
     fit, where = recipe.fit, f"{key}.fit"
     why = "half of peg_radius_mm, or the peg would have no front that stands on a face"
     yield Bound(f"{where}.peg_chamfer_mm", fit.peg_chamfer_mm, why, most=fit.peg_radius_mm / 2)
+    why = "peg_radius_mm: no hole is chamfered by more than the peg is wide"
+    yield Bound(f"{where}.hole_chamfer_mm", fit.hole_chamfer_mm, why, most=fit.peg_radius_mm)
     entry_mm = fit_geometry(fit).entry_depth_m / MM
     why = f"the peg is between the walls only {entry_mm:g} mm below the face, after both chamfers"
     yield Bound(f"{where}.depth_mm", fit.depth_mm, why, least=entry_mm)

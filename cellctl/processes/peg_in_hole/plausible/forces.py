@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.bounds.bound import Bound
 from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.checks.sensor_places import sensor_bounds, straight_mm
 from cellctl.config.driver_settings import measuring_range
@@ -69,6 +69,10 @@ def _seat(recipe: PegRecipe, settings: PegSettings, key: str) -> Iterator[Bound]
         yield Bound(f"{key}.seat.pull_n", seat.pull_n, why, least=least_n)
         why = "pull_n, which the part holds: with less it is never drawn out again"
         yield Bound(f"{key}.forces.withdrawal_n", forces.withdrawal_n, why, least=seat.pull_n)
+    if recipe.fit.contacts is not None:
+        why = "fit.contacts.least_n, which hold the part back: with less it is never drawn out"
+        least_n = recipe.fit.contacts.least_n
+        yield Bound(f"{key}.forces.withdrawal_n", forces.withdrawal_n, why, least=least_n)
     if seat.grip_n is not None:
         least_n = forces.insertion_n / MOST_OF_GRIP
         why = f"insertion_n over {MOST_OF_GRIP:g}, or no part could be told from one that slipped"

@@ -6,7 +6,7 @@ from typing import Any
 
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.bounds.bound import Bound
 from cellctl.config.checks.plausible.sensors import NOISE_SHARE
 from cellctl.config.driver_settings import measuring_range, sensor_rate_hz
 from cellctl.config.issue import ConfigIssue
@@ -21,6 +21,8 @@ _LEAST_HEIGHT_SHARE = 0.1
 """Of the repeatability: heights are read from the same joints."""
 _STREAM_PERIOD_MS = 4.0
 """Of the fastest controllers; a setpoint takes effect two periods after the force at the least."""
+_MOST_NOISE = 0.01
+"""Of the range of a force sensor, as the standard deviation of its samples."""
 _SOFT_N_MM = 25.0
 """Softer are only arms of a few kilograms payload with long links."""
 
@@ -48,6 +50,12 @@ def loop_bounds(
             "taken for a living one"
         )
         yield Bound(f"{where}.force_sigma_n", settings.force_sigma_n, why, least=least_n)
+        most_n = _MOST_NOISE * min(measuring[:3])
+        why = (
+            f"{_MOST_NOISE:g} of the sensor's range: the noise of sensors lies far below, and with "
+            "more no contact is told from it"
+        )
+        yield Bound(f"{where}.force_sigma_n", settings.force_sigma_n, why, most=most_n)
 
 
 def _bounds_of_loop(

@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from math import degrees, hypot
 
+from scipy.spatial.transform import RigidTransform
+
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import Over, flange_at
+from cellctl.config.checks.over_places import Link, Over, flange_at
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.insertion.keyway import sweep_rad
@@ -14,7 +16,7 @@ from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ABOVE_HOLE, ARM
 from cellctl.processes.peg_in_hole.settings import PegSettings
-from cellctl.processes.peg_in_hole.stations import tip_at_hole
+from cellctl.processes.peg_in_hole.stations import OVER, tip_at_hole
 from cellctl.processes.peg_in_hole.verdict.holding import telling_turn_rad
 
 _TRAVEL_MM, _TRAVEL_DEG = "max_stream_travel_mm", "max_stream_travel_deg"
@@ -22,15 +24,20 @@ _TRAVEL_MM, _TRAVEL_DEG = "max_stream_travel_mm", "max_stream_travel_deg"
 
 def over_hole(recipe: PegRecipe, key: str) -> Over:
     """The tip over the hole, where it was taught."""
-    place = WrittenValue(f"{key}.base_T_hole.pose", str(list(recipe.base_T_hole.pose)))
-    tip = WrittenValue(f"{key}.flange_T_tip", str(list(recipe.flange_T_tip)))
     return Over(
         recipe.device(ARM),
         ABOVE_HOLE,
         pose_from_xyzabc(recipe.flange_T_tip),
         tip_at_hole(recipe),
         f"{key}.base_T_hole",
-        (place, tip),
+        (
+            Link(
+                f"{key}.base_T_hole.pose",
+                recipe.base_T_hole.pose,
+                after=RigidTransform.from_rotation(OVER),
+            ),
+        ),
+        (Link(f"{key}.flange_T_tip", recipe.flange_T_tip),),
         height_mm=recipe.base_T_hole.taught_above_mm,
         is_round=recipe.fit.keys is None,
     )

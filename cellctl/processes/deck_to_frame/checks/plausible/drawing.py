@@ -71,5 +71,9 @@ def _drawing(part: str, written: str, recipe_key: str, folder: Path) -> PartDraw
     path = folder / written
     content = path.read_bytes()
     return PartDrawing(
-        part, written, recipe_key, parse_features(content, str(path)), key_lines(content.decode())
+        part,
+        written,
+        recipe_key,
+        parse_features(content, str(path)),
+        key_lines(content.decode("utf-8-sig")),
     )

@@ -1,26 +1,30 @@
 """Figures of a recipe, and poses of the cell, that are possible and in all likelihood slips."""
 
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import cast
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.bound import bound_issues
+from cellctl.config.checks.bounds.bound import Bound
+from cellctl.config.checks.bounds.contradiction import contradictions
 from cellctl.config.checks.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
 from cellctl.processes.deck_to_frame.checks.plausible.drawings import drawing_issues
 from cellctl.processes.deck_to_frame.checks.plausible.face import face_issues
-from cellctl.processes.deck_to_frame.checks.plausible.limits import limit_issues
+from cellctl.processes.deck_to_frame.checks.plausible.limits import limit_bounds
 from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
 from cellctl.processes.deck_to_frame.checks.plausible.sigmas import sigma_bounds
 from cellctl.processes.deck_to_frame.checks.plausible.station import station_issues
 from cellctl.processes.deck_to_frame.checks.plausible.stored import stored_issues
 from cellctl.processes.deck_to_frame.checks.plausible.zones import zone_use_issues
+from cellctl.processes.deck_to_frame.checks.reach import height_bounds
 from cellctl.processes.deck_to_frame.checks.turned_sensor import turned_sensor_issues
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import FORCE
+from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.vision.features.feature_file import read_features
 
@@ -44,9 +48,7 @@ def plausible_issues(
     yield from _mating(recipe, key)
     yield from _thresholds(recipe, key)
     yield from _thickness(recipe, key, folder)
-    yield from limit_issues(recipe, key)
-    yield from bound_issues(sigma_bounds(recipe, key))
-    yield from bound_issues(sensor_bounds(cell, recipe.device(FORCE), recipe.flange_T_deck))
+    yield from contradictions(cell, recipe, key, partial(_bounds, key=key))
     yield from face_issues(recipe, key, read_features(folder / recipe.deck_features))
     loads = list(load_issues(cell, recipe, key))
     yield from loads
@@ -57,6 +59,14 @@ def plausible_issues(
     yield from (one for one in stored_issues(cell, recipe, key, folder) if one.key not in named)
     deck, frame = read_drawings(recipe, key, folder)
     yield from drawing_issues(deck, frame, recipe)
+
+
+def _bounds(cell: CellConfig, recipe: Recipe, key: str) -> Iterator[Bound]:
+    known = cast(DeckRecipe, recipe)
+    yield from limit_bounds(known, key)
+    yield from sigma_bounds(known, key)
+    yield from sensor_bounds(cell, known.device(FORCE), known.flange_T_deck)
+    yield from height_bounds(cell, known.device(MAIN), known, key)
 
 
 def _board(settings: DeckSettings, path: str) -> Iterator[ConfigIssue]:

@@ -3,8 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from cellctl.config.checks.bound import Bound, bound_issues
-from cellctl.config.issue import ConfigIssue
+from cellctl.config.checks.bounds.bound import Bound
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.reach import BESIDE_MM, TURNED_DEG
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
@@ -14,10 +13,10 @@ _MOST_OVER_THRESHOLD = 10.0
 _MOST_OVER_STAND_OFF = 2.0
 
 
-def limit_issues(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
-    """Each figure that fits its own range and not the other figures of the recipe."""
+def limit_bounds(recipe: DeckRecipe, key: str) -> Iterator[Bound]:
+    """Each figure that has to fit the other figures of the recipe, beyond its own range."""
     bounds = (*_verdicts(recipe), *_correction(recipe), *_forces(recipe))
-    yield from bound_issues(replace(one, key=f"{key}.{one.key}") for one in bounds)
+    yield from (replace(one, key=f"{key}.{one.key}") for one in bounds)
 
 
 def _verdicts(recipe: DeckRecipe) -> Iterator[Bound]:

@@ -6,7 +6,7 @@ contacts come too early or too late, at the end of a run.
 
 from collections.abc import Iterator
 
-from cellctl.config.checks.bound import Bound
+from cellctl.config.checks.bounds.bound import Bound
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
 _IT5_UNITS = 7.0

@@ -1,0 +1,1 @@
+"""Figures that have to keep bounds, and what takes part where one does not."""
