@@ -29,7 +29,7 @@ _HALF_TURN_DEG = 180.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Link:
+class ChainedPose:
     """A written pose from which a tool, or its place, follows: ``before * pose * after``."""
 
     key: str
@@ -69,9 +69,9 @@ class Over:
     """Pose of the tool at the place itself; its z axis leads to it."""
     key: str
     """Of the place in the recipe, or the calibration that has it."""
-    of_place: tuple[Link, ...] = ()
+    of_place: tuple[ChainedPose, ...] = ()
     """The values that the place follows from."""
-    of_tool: tuple[Link, ...] = ()
+    of_tool: tuple[ChainedPose, ...] = ()
     """The values that the tool follows from."""
     height_mm: float | None = None
     """How high over the place the tool was when the pose was taught; None where nobody measured."""

@@ -44,10 +44,18 @@ def read_drawings(recipe: AntennaRecipe, folder: Path) -> Drawings:
         if connector.kind != kind:
             raise ConnectorFileInvalid(f"{key}: {connector.name} has {connector.kind}, not {kind}")
     if set(plug.contacts) != set(socket.contacts):
-        raise ConnectorFileInvalid(f"contacts of {plug.name} and {socket.name} are not the same")
+        raise ConnectorFileInvalid(
+            f"contacts of {plug.name} and {socket.name} are not the same"
+            f"{_lacks(recipe.plug, plug, socket)}{_lacks(recipe.socket, socket, plug)}"
+        )
     _require_fit(plug, socket)
     gripper = read_marks(folder / recipe.gripper_marks)
     return Drawings(plug, socket, gripper, read_marks(folder / recipe.module_top))
+
+
+def _lacks(file: str, connector: Connector, other: Connector) -> str:
+    missing = [name for name in other.contacts if name not in connector.contacts]
+    return f"; {file} ({connector.kind}) lacks {', '.join(missing)}" if missing else ""
 
 
 def _require_fit(plug: Connector, socket: Connector) -> None:

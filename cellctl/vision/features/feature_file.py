@@ -82,8 +82,12 @@ def _features(data: Mapping[str, Any]) -> FeatureFile:
 
 def _head(data: Mapping[str, Any], key: str, names: list[str]) -> tuple[str, ...]:
     listed = data.get(key, [])
-    if not isinstance(listed, list) or not set(listed) <= set(names):
-        raise ValueError(f"{key} must list names of holes")
+    if not isinstance(listed, list):
+        raise ValueError(f"{key} must list names of holes")  # noqa: TRY004
+    if (strange := next((one for one in listed if one not in names), None)) is not None:
+        raise ValueError(
+            f"{key} must list names of holes; {strange!r} is none of {', '.join(names)}"
+        )
     if twice := next((name for name in listed if listed.count(name) > 1), None):
         raise ValueError(f"{key} lists {twice} twice")
     return tuple(listed)

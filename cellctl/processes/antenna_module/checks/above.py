@@ -5,7 +5,12 @@ from collections.abc import Iterator
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import Link, Over, over_place_issues, unmeasured_height
+from cellctl.config.checks.over_places import (
+    ChainedPose,
+    Over,
+    over_place_issues,
+    unmeasured_height,
+)
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.mated import MATED_TURN
@@ -37,7 +42,7 @@ def above_remarks(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator
 def _taught(cell: CellConfig, recipe: AntennaRecipe, key: str) -> list[Over]:
     """The plug over those of its places over which a pose was taught."""
     arm, itself = recipe.device(ARM), RigidTransform.identity()
-    plug = Link(f"{key}.flange_T_plug", recipe.flange_T_plug)
+    plug = ChainedPose(f"{key}.flange_T_plug", recipe.flange_T_plug)
     places = {
         ABOVE_TRAY: (f"{key}.base_T_tray_plug", recipe.base_T_tray_plug, itself),
         ABOVE_SOCKET: (f"{key}.base_T_socket", recipe.base_T_socket, MATED_TURN),
@@ -49,7 +54,7 @@ def _taught(cell: CellConfig, recipe: AntennaRecipe, key: str) -> list[Over]:
             pose_from_xyzabc(recipe.flange_T_plug),
             pose_from_xyzabc(place.pose) * place_T_plug,
             where,
-            (Link(f"{where}.pose", place.pose, after=place_T_plug),),
+            (ChainedPose(f"{where}.pose", place.pose, after=place_T_plug),),
             (plug,),
             height_mm=place.taught_above_mm,
         )

@@ -15,7 +15,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.pose_record import pose_from_record
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import Link, Over, over_place_issues
+from cellctl.config.checks.over_places import ChainedPose, Over, over_place_issues
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place
@@ -47,7 +47,7 @@ def look_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
     written = cell.cameras[name].flange_T_camera
     if written is None:
         return
-    camera = Link(f"cameras.{name}.flange_T_camera", written)
+    camera = ChainedPose(f"cameras.{name}.flange_T_camera", written)
     top, itself = pose_from_xyzabc(recipe.plug_T_top), RigidTransform.identity()
     places: dict[str, tuple[str, Place, RigidTransform]] = {
         TRAY_LOOK: (f"{key}.base_T_tray_plug", recipe.base_T_tray_plug, top),
@@ -59,10 +59,10 @@ def look_issues(cell: CellConfig, recipe: AntennaRecipe, key: str) -> Iterator[C
         places[REFERENCE_LOOK] = (where, reference.base_T_plate, itself)
     for pose, (where, place, place_T_seen) in places.items():
         base_T_seen = pose_from_xyzabc(place.pose) * place_T_seen * OVER
-        links = [Link(f"{where}.pose", place.pose, after=place_T_seen * OVER)]
+        links = [ChainedPose(f"{where}.pose", place.pose, after=place_T_seen * OVER)]
         if pose == TRAY_LOOK:
             base_T_plug = pose_from_xyzabc(place.pose)
-            links.append(Link(f"{key}.plug_T_top", recipe.plug_T_top, base_T_plug, OVER))
+            links.append(ChainedPose(f"{key}.plug_T_top", recipe.plug_T_top, base_T_plug, OVER))
         over = Over(
             arm,
             pose,

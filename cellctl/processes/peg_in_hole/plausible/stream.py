@@ -6,7 +6,7 @@ from math import degrees, hypot
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import Link, Over, flange_at
+from cellctl.config.checks.over_places import ChainedPose, Over, flange_at
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.insertion.keyway import sweep_rad
@@ -31,13 +31,13 @@ def over_hole(recipe: PegRecipe, key: str) -> Over:
         tip_at_hole(recipe),
         f"{key}.base_T_hole",
         (
-            Link(
+            ChainedPose(
                 f"{key}.base_T_hole.pose",
                 recipe.base_T_hole.pose,
                 after=RigidTransform.from_rotation(OVER),
             ),
         ),
-        (Link(f"{key}.flange_T_tip", recipe.flange_T_tip),),
+        (ChainedPose(f"{key}.flange_T_tip", recipe.flange_T_tip),),
         height_mm=recipe.base_T_hole.taught_above_mm,
         is_round=recipe.fit.keys is None,
     )

@@ -70,3 +70,22 @@ def test_the_mark_that_windows_puts_before_a_file_is_no_mistake(tmp_path: Path) 
         file.write_bytes(b"\xef\xbb\xbf" + file.read_bytes())
     assert problems_before_commissioning(path) == []
     assert (CONFIG / "deck.toml").read_bytes()[:3] != b"\xef\xbb\xbf"
+
+
+def test_a_hole_that_a_list_misspells_is_named(tmp_path: Path) -> None:
+    path = written(tmp_path, "deck.toml", 'head_1 = ["', 'head_1 = ["X', ("deck.toml",))
+    (found,) = problems_before_commissioning(path)
+    assert "'XP1' is none of P1, " in found.allowed
+
+
+def test_a_contact_that_a_drawing_lacks_is_named_with_its_file(tmp_path: Path) -> None:
+    path = written(tmp_path, "antenna.toml")
+    drawn = next(line for line in path.read_text().splitlines() if line.startswith("plug = "))
+    file = tmp_path / drawn.split('"')[1]
+    text = file.read_text()
+    copied = tmp_path / "plug.toml"
+    copied.write_text(text.replace('name = "15"', 'name = "16"'))
+    path.write_text(path.read_text().replace(drawn, 'plug = "plug.toml"'))
+    found = problems_before_commissioning(path)[0]
+    assert "plug.toml (pins) lacks 15" in found.value
+    assert "(holes) lacks 16" in found.value
