@@ -16,7 +16,7 @@ from fakes.demo.children import ChildFailed, Family
 from fakes.demo.control import Refused
 from fakes.demo.demo import Demo
 from fakes.demo.gentl import Cameras, UnusualCellFile
-from fakes.demo.ports import PortInUse, check_ports
+from fakes.demo.ports import NoLoopback, PortInUse, check_ports
 from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, require_simulated
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.gentl.build import NoCompilerError
@@ -33,6 +33,7 @@ _REFUSALS = (
     FolderInUse,
     NotSimulated,
     PortInUse,
+    NoLoopback,
     registry.UnknownProcess,
     UnknownScene,
     UnknownImperfection,

@@ -15,8 +15,14 @@ class PortInUse(RuntimeError):
     """A port that the demonstration needs is taken."""
 
 
+class NoLoopback(RuntimeError):
+    """This PC does not reach itself, over which all of the demonstration talks."""
+
+
 def check_ports(scenario: Scenario, cell: Path) -> None:
-    """Raise ``PortInUse`` for the first port, of the fake cell or the daemon, that is taken."""
+    """Raise ``PortInUse`` for the first port, of the fake cell or the daemon, that is taken, and
+    ``NoLoopback``."""
+    require_network(HOST)
     for name, port in {**scenario.ports(), **_modbus_port(cell)}.items():
         if not _free(port):
             raise PortInUse(
@@ -24,6 +30,18 @@ def check_ports(scenario: Scenario, cell: Path) -> None:
                 "demonstration: end that one (Ctrl-C in its terminal), or give other ports in "
                 "copies of both files and name them with --scenario and --cell"
             )
+
+
+def require_network(host: str) -> None:
+    """Raise ``NoLoopback`` when no packet could go to a host; sends none."""
+    with socket.socket(type=socket.SOCK_DGRAM) as probe:
+        try:
+            probe.connect((host, DEFAULT_MODBUS_PORT))
+        except OSError as error:
+            raise NoLoopback(
+                f"fake cell, daemon and line talk over {host}, which cannot be reached "
+                f"({error.strerror}): bring the loopback interface up (ip link set lo up)"
+            ) from error
 
 
 def _modbus_port(cell: Path) -> dict[str, int]:

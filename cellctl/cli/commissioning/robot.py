@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +13,8 @@ from cellctl.cli.cell_daemon import client_of
 from cellctl.cli.commissioning.one_robot import cell_with, connected
 from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
+from cellctl.cli.operator.no_end import without_end
+from cellctl.clock import utc_now
 from cellctl.config import CellConfig
 from cellctl.config.devices import RobotConfig
 from cellctl.config.driver_settings import motion_bounds
@@ -77,9 +80,15 @@ def _stop_latency(cell: CellConfig, cell_file: Path, name: str) -> dict[str, Any
     folder = cell_file.parent / cell.calibration_dir
     return {
         f"{stored.kind} of {stored.made:%Y-%m-%d %H:%M}": f"at most {stored.upper_ms:.0f} ms, "
-        f"valid until {stored.valid_until:%Y-%m-%d %H:%M} UTC"
+        f"{_validity(stored.valid_until)}"
         for stored in stored_stop_latencies(folder)
     } or {"stored": "none; the bound of the recipe counts"}
+
+
+def _validity(valid_until: datetime) -> str:
+    if without_end(valid_until, utc_now()):
+        return "valid without end"
+    return f"valid until {valid_until:%Y-%m-%d %H:%M} UTC"
 
 
 def _load(robot: RobotConfig) -> dict[str, Any]:

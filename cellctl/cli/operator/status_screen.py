@@ -13,6 +13,7 @@ from cellctl.api.local_socket.report import (
     ForceReport,
     StatusReport,
 )
+from cellctl.cli.operator.no_end import without_end
 from cellctl.errors import CellError
 from cellctl.records.outcome import outcome
 
@@ -45,9 +46,6 @@ _CONTROL = {
     "line": "line PLC; here only Stop, Abort, Hold, Clear and alarms",
     "shared": "terminal and line PLC",
 }
-
-_NO_END_D = 36_500
-"""A century: what is valid for longer was stored as valid for ever."""
 
 
 def screen(report: StatusReport, now: datetime) -> RenderableType:
@@ -217,7 +215,8 @@ def _dates(item: CalibrationReport, now: datetime) -> tuple[str, str]:
         return "–", "–"
     # Whole days, rounded down: a calibration lasts at least as long as the screen says.
     left = max(0, (item.valid_until - now).days)
-    return f"{(now - item.made).days} d", "no end" if left > _NO_END_D else f"{left} d"
+    valid_for = "no end" if without_end(item.valid_until, now) else f"{left} d"
+    return f"{(now - item.made).days} d", valid_for
 
 
 def _well(problem: str) -> Text:
