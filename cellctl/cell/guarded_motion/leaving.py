@@ -4,7 +4,6 @@ import asyncio
 from dataclasses import replace
 
 from cellctl.cell.guarded_motion.guard_port import GuardPort
-from cellctl.clock import now_s
 from cellctl.errors.force import LiftOffHeld
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
@@ -32,16 +31,19 @@ async def pressed_n(guard: GuardClient, inwards: float, most_n: float) -> float:
     To be asked before a tare, which hides it: a part that is drawn out changes the force by this
     before it is pulled at all. What an earlier tare has hidden counts. ``inwards`` is 1 where z of
     the guard's frame points into the place and -1 where it points out. Without a frame of the part,
-    or a zero that was taken in it, nobody knows: ``most_n``. So it is once daemon or guard have
-    been started anew.
+    a zero that was taken in it, or a sample, nobody knows: ``most_n``. So it is once daemon or
+    guard have been started anew.
     """
     hidden_n = guard.hidden_axial_n
     if not guard.in_part_frame or hidden_n is None:
         return most_n
-    begin_s = now_s()
+    # The clock of the loop is the one that stamps samples, also in a loop whose time is simulated.
+    begin_s = asyncio.get_running_loop().time()
     await asyncio.sleep(_READING_S)
-    along_n = hidden_n + float(guard.samples(begin_s).wrench[:, 2].mean())
-    return min(most_n, -inwards * along_n)
+    wrench = guard.samples(begin_s).wrench
+    if not len(wrench):
+        return most_n
+    return min(most_n, -inwards * (hidden_n + float(wrench[:, 2].mean())))
 
 
 def change_while_drawn_n(pull_n: float, press_n: float) -> float:

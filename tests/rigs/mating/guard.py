@@ -49,6 +49,7 @@ class WorldGuard:
         self._monitor = WrenchMonitor(self._flange_R_sensor, has_channel=True)
         self._monitor.channel_up = True
         self.gravity_compensated = False
+        self.in_part_frame = False
         self.hidden_axial_n: float | None = None
 
     # -- what the process does ------------------------------------------------------------------
@@ -124,6 +125,7 @@ class WorldGuard:
         self._monitor.require_unarmed()
         frame = RigidTransform.identity() if sensor_T_wrench is None else sensor_T_wrench
         self._monitor.contact.set_wrench_frame(_nine(frame), frame.translation.tolist())
+        self.in_part_frame = sensor_T_wrench is not None
         self._monitor.signal_jumped()
 
     async def tare(self, duration_s: float, *, hides_axial_n: float = 0.0) -> TareResult:

@@ -6,6 +6,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
 from cellctl.cell.guarded_motion.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s
@@ -30,6 +31,8 @@ LOW_M = 0.03
 where a mating begins, and all that a mating can leave."""
 OVER_STATION_M = 0.1
 """A deck less than this above its seat is under the heads, where these stand over the station."""
+_INWARDS = -1
+"""Along z of the deck, which points away from the frame."""
 NEAR_STATION_M = 0.8
 """Along either axis of the frame, between its middle and the deck's: they may overlap."""
 
@@ -47,23 +50,32 @@ async def lift_off(cell: DeckCell) -> None:
         return
     _log.info("lifting off the station")
     mating = recipe.mating
-    # What a mating has left may go without a fault: never more than its own limits.
-    tolerance = WrenchTolerance(mating.limit_force_n, 2.0 * mating.max_moment_n_m)
     # The normal of the frame and not the axis of the flange: a deck on pins must leave along them.
     away = _frame_of(cell, recipe).rotation.apply([0.0, 0.0, 1.0])
     flange_T_deck = pose_from_xyzabc(recipe.flange_T_deck)
-    guarded = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck, tolerance)
+    guarded = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck)
+    # Before the tare hides it.
+    press_n = await pressed_n(cell.arm.guard, _INWARDS, mating.limit_force_n)
     try:
-        async with guarded() as move:
+        async with guarded(_tolerance(mating, press_n), hides_axial_n=-_INWARDS * press_n) as move:
             first_m_s = first_lift_speed_m_s(mating, cell.force_config)
             above = _above(base_T_flange, FIRST_LIFT_M * away)
             await move(cell.main.step(above, speed_m_s=first_m_s))
         # From a new zero: the first one was taken while the deck was pressed on the frame, so that
         # what is felt of a free deck is that force, and acceleration would come on top of it.
-        async with guarded() as move:
+        async with guarded(_tolerance(mating, 0.0)) as move:
             await _rise(cell, mating, base_T_flange, away, move)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault
+
+
+def _tolerance(mating: Mating, press_n: float) -> WrenchTolerance:
+    """What a mating has left may go without a fault: never more than its own limits. A deck that an
+    earlier attempt has left pulled may be pulled by the less; raises ``LiftOffHeld`` where that is
+    nothing."""
+    limit_n = mating.limit_force_n
+    axial_n = min(limit_n, change_while_drawn_n(limit_n, press_n))
+    return WrenchTolerance(limit_n, 2.0 * mating.max_moment_n_m, axial_n=axial_n)
 
 
 def is_over_station(cell: DeckCell) -> bool:

@@ -2,12 +2,17 @@
 
 import asyncio
 
+import numpy as np
+import pytest
+
 from cellctl.daemon.supervision import LinkMonitor
 from cellctl.errors.force import LiftOffHeld
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.processes.deck_to_frame.moves.lift_off import lift_off
+from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
 
 HELD = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -50.30 N, limit 50.00 N", 2, -50.3)
@@ -44,3 +49,28 @@ async def test_after_clear_and_reset_it_goes_on_from_a_new_zero(daemon_rig: Daem
     await daemon_rig.idle()
     assert guard.asked.count("tare") == 3, "pressed, and after the new start pressed and free"
     assert len(main.moves) == 4
+
+
+@pytest.mark.parametrize(
+    ("along_n", "may_n"), [(35.0, 50.0), (0.0, 50.0), (-30.0, 20.0)], ids=["pressed", "", "pulled"]
+)
+async def test_a_deck_that_is_pulled_already_is_pulled_by_the_less(
+    bench: Bench, along_n: float, may_n: float
+) -> None:
+    bench.cell.main.flange = bench.flange_over_seat(0.0)
+    guard = bench.cell.guard
+    guard.raw = guard.raw * 0.05 + np.array([0.0, 0.0, along_n, 0.0, 0.0, 0.0])
+    await lift_off(bench.deck)
+    first, *_ = guard.limits
+    assert bench.recipe.mating.limit_force_n == 50.0
+    assert first.filtered[2] == pytest.approx(may_n, abs=0.1)
+
+
+async def test_a_deck_that_holds_a_full_pull_is_not_pulled_again(bench: Bench) -> None:
+    bench.cell.main.flange = bench.flange_over_seat(0.0)
+    guard = bench.cell.guard
+    guard.raw = guard.raw * 0.05 - np.array([0.0, 0.0, 52.0, 0.0, 0.0, 0.0])
+    for _ in range(2):
+        with pytest.raises(LiftOffHeld, match="pulled with 52 N already, allowed 50 N"):
+            await lift_off(bench.deck)
+    assert bench.cell.main.moves == []
