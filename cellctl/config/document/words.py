@@ -131,10 +131,7 @@ def _limits(node: Mapping[str, Any]) -> str:
         return f"{'more than' if above else 'at least'} {lower:g}"
     if lower is None:
         return f"{'less than' if below else 'at most'} {upper:g}"
-    if not above and not below:
-        return f"{lower:g} to {upper:g}"
-    least = f"{'more than' if above else 'at least'} {lower:g}"
-    return f"{least} and {'less than' if below else 'at most'} {upper:g}"
+    return f"{'more than ' * above}{lower:g} to {'less than ' * below}{upper:g}"
 
 
 def _of_the_form(written: str, pattern: str, examples: Sequence[str]) -> str:
