@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from cellctl.cli import check
 from cellctl.cli.commands import whole_app
 from cellctl.config import load_cell, problems
 from cellctl.config.commissioning import examine_before_commissioning
@@ -202,7 +201,7 @@ def test_check_tells_of_calibrations_that_this_user_may_not_write(
 ) -> None:
     path = changed(tmp_path, folder=("demo-calibration", "calibration"))
     assert "may not write" not in CliRunner().invoke(whole_app(), ["check", str(path)]).output
-    monkeypatch.setattr(check, "may_write", lambda _: False)
+    monkeypatch.setattr("cellctl.cli.commissioning.hints.may_write", lambda _: False)
     result = CliRunner().invoke(whole_app(), ["check", str(path)])
     assert result.exit_code == 0
     assert "may not write" in result.output
