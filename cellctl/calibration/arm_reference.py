@@ -5,6 +5,7 @@ arm or the head was moved, a joint was mastered anew or exchanged, or a target w
 it was needs no kinematics to tell, and none is used: whatever rests on the arm is wrong then.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -64,31 +65,47 @@ class ArmReference:
         return cls(np.radians(record["joints_deg"]), tuple(targets))
 
 
-def require_arm_at_reference(then: ArmReference, now: ArmReference) -> float:
-    """The greatest distance of a target from its place in the reference, in m.
+@dataclass(frozen=True, slots=True)
+class TargetOffset:
+    """How far a target is from its place in the reference."""
 
-    Raises ``ArmOffReference`` when one is farther than noise explains, and ``ArmReferenceMissing``
-    when fewer than three are seen again.
-    """
+    name: str
+    off_m: float
+    limit_m: float
+    """What noise and temperature explain."""
+
+    @property
+    def share(self) -> float:
+        """Of the limit. A place that is not a number is off by any measure."""
+        return math.inf if math.isnan(self.off_m) else self.off_m / self.limit_m
+
+
+def target_offsets(then: ArmReference, now: ArmReference) -> tuple[TargetOffset, ...]:
+    """Those of the targets that are seen again; raises ``ArmReferenceMissing`` for fewer than
+    three."""
     pairs = _pairs(then.targets, now.targets)
     if len(pairs) < LEAST_TARGETS:
         names = ", ".join(target.name for target, _ in pairs) or "none"
         raise ArmReferenceMissing(f"of its targets these are seen again: {names}")
-    worst_m, worst_share, words = 0.0, 0.0, ""
-    for before, after in pairs:
-        off_m = float(np.linalg.norm(after.position_m - before.position_m))
-        sigma_m = float(
-            np.hypot(np.hypot(before.sigma_m, after.sigma_m), 2**0.5 * _REPEATABILITY_M)
-        )
-        limit_m = max(MOVED_M, _SIGMAS * sigma_m)
-        worst_m = max(worst_m, off_m)
-        # Written so that a place that is not a number is off.
-        if not off_m / limit_m <= max(1.0, worst_share):
-            worst_share = off_m / limit_m
-            words = f"{before.name} {off_m / MM:.3f} mm off, at most {limit_m / MM:.3f} mm"
-    if words:
-        raise ArmOffReference(words)
-    return worst_m
+    return tuple(_offset(before, after) for before, after in pairs)
+
+
+def require_arm_at_reference(offsets: Sequence[TargetOffset]) -> float:
+    """The greatest distance of a target from its place in the reference, in m; at least one.
+
+    Raises ``ArmOffReference`` when one is farther than noise explains.
+    """
+    worst = max(offsets, key=lambda one: one.share)
+    if worst.share > 1.0:
+        off, limit = worst.off_m / MM, worst.limit_m / MM
+        raise ArmOffReference(f"{worst.name} {off:.3f} mm off, at most {limit:.3f} mm")
+    return max(one.off_m for one in offsets)
+
+
+def _offset(before: Target, after: Target) -> TargetOffset:
+    off_m = float(np.linalg.norm(after.position_m - before.position_m))
+    sigma_m = float(np.hypot(np.hypot(before.sigma_m, after.sigma_m), 2**0.5 * _REPEATABILITY_M))
+    return TargetOffset(before.name, off_m, max(MOVED_M, _SIGMAS * sigma_m))
 
 
 def _pairs(then: Sequence[Target], now: Sequence[Target]) -> list[tuple[Target, Target]]:

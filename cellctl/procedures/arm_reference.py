@@ -1,11 +1,18 @@
 """Whether an arm still stands where its base frame was measured: one look at its targets."""
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 
-from cellctl.calibration.arm_reference import ArmReference, require_arm_at_reference
+from cellctl.calibration.arm_reference import (
+    ArmReference,
+    TargetOffset,
+    require_arm_at_reference,
+    target_offsets,
+)
 from cellctl.errors.robot import ArmReferenceMissing
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot, TargetTracker
+from cellctl.records.figures import Limit, figure
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.procedure import ProcedureContext
 
 
@@ -43,5 +50,22 @@ async def check_arm_reference(
     await robot.move_joint(reference.joints_rad, speed_ratio=speed_ratio)
     now = await look_at_arm(robot, tracker, frames=frames, target_prefix=target_prefix)
     await go_home()
-    worst_m = require_arm_at_reference(reference, now)
+    offsets = target_offsets(reference, now)
+    # Before the verdict: by how much the arm is off belongs into the record of its run.
+    await _keep(context, offsets)
+    worst_m = require_arm_at_reference(offsets)
     context.board.update(message=f"all targets within {worst_m / MM:.3f} mm")
+
+
+async def _keep(context: ProcedureContext, offsets: Sequence[TargetOffset]) -> None:
+    if context.record.number:
+        await RunRecorder(context.record.store, context.record.number).figures(
+            figure(
+                f"target_offset.{one.name}",
+                one.off_m / MM,
+                "mm",
+                label=f"distance of target {one.name} from its place",
+                limit=Limit(upper=one.limit_m / MM),
+            )
+            for one in offsets
+        )

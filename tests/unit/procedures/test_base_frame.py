@@ -14,6 +14,8 @@ from cellctl.errors.robot import ArmOffReference, ArmReferenceMissing
 from cellctl.geometry.pose import pose_error
 from cellctl.interfaces import Target
 from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME, BOARD_TRANSFER
+from cellctl.records.entries import RunResult, Verdict
+from cellctl.records.store import RunStore
 from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.rigs.calibration.turned_arm import (
@@ -113,6 +115,27 @@ async def test_an_arm_that_nobody_has_touched_passes_its_check(
     settings, main = rig.bench.settings, rig.bench.deck.main_config
     np.testing.assert_allclose(joints[-2], settings.base_frame_joints_deg, atol=1e-9)
     np.testing.assert_allclose(joints[-1], main.poses_deg["home"], atol=1e-9)
+
+
+@pytest.mark.parametrize("turned_deg", [0.0, 0.02])
+async def test_a_check_leaves_in_its_run_how_far_each_target_is(
+    rig: ProcedureRig, watching: Watching, turned_deg: float
+) -> None:
+    await measured(rig)
+    watching.mastered_beside_rad[0] = np.radians(turned_deg)
+    job = rig.job(109)
+    await job.start()
+    try:
+        await job.execute()
+        await job.close(RunResult.GOOD, None)
+    except ArmOffReference as fault:
+        await job.close(RunResult.ABORTED, fault)
+    record = await rig.archive.do(RunStore.run, job.run_number)
+    found = record.newest_figures
+    assert len(found) == 6
+    assert all(key.startswith("target_offset.") for key in found)
+    moved = any(one.verdict is Verdict.FAIL for one in found.values())
+    assert moved == (record.head.result == RunResult.ABORTED) == (turned_deg > 0)
 
 
 @pytest.mark.parametrize("joint", range(1, 7))

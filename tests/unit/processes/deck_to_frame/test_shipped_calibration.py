@@ -11,7 +11,12 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.arm_reference import MOVED_M, ArmReference, require_arm_at_reference
+from cellctl.calibration.arm_reference import (
+    MOVED_M,
+    ArmReference,
+    require_arm_at_reference,
+    target_offsets,
+)
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.clock import utc_now
@@ -76,10 +81,10 @@ def test_the_arm_stands_where_its_base_frame_was_measured_until_it_is_mastered_a
         targets = (Target(one.name, one.position_m, one.sigma_m) for one in seen)
         return ArmReference(reference.joints_rad, tuple(targets))
 
-    assert require_arm_at_reference(reference, look()) < MOVED_M
+    assert require_arm_at_reference(target_offsets(reference, look())) < MOVED_M
     arm.master(1, np.radians(0.03))
     with pytest.raises(ArmOffReference):
-        require_arm_at_reference(reference, look())
+        require_arm_at_reference(target_offsets(reference, look()))
 
 
 @pytest.mark.parametrize("index", [0, 1])
