@@ -93,10 +93,10 @@ class ForceLimitExceeded(ForceError):
     text = "Force limit exceeded"
     cause = "Contact where none was expected, a wrong payload, or a robot that stopped too late."
     remedy = (
-        "Look at the force curve in the record; inspect the parts before the next attempt. In a "
+        "Look at the force curve in the record; inspect the parts before the next attempt. If the "
+        "move touched nothing: compare `free_force_n` of the sensor with the force that its load "
+        "makes as a move starts (docs/guard.md)."
     )
-    remedy += "move that touches nothing: compare `free_force_n` of the sensor with what its load "
-    remedy += "makes of a start (docs/guard.md)."
 
 
 class FlangePoseStale(ForceError):

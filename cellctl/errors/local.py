@@ -54,7 +54,7 @@ class StopNotDelivered(LocalError):
     """A Stop or an Abort of which nobody says that it was taken: the arms may move on."""
 
     number = 720
-    text = "The stop has reached nobody: do not count on it"
+    text = "Nobody has confirmed the stop: do not count on it"
     cause = "The daemon does not run, hangs, uses another socket, or this user is not in its group."
     remedy = "If anything moves or presses, press the emergency stop. Robots whose daemon has died "
     remedy += "stop by themselves, for want of its sign of life, but an arm in contact stays there "

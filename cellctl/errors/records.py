@@ -61,7 +61,7 @@ class RecordNotWritten(RecordsError):
     number = 803
     text = "A record could not be written"
     cause = "Disk full, failing or read-only; or a command of a user who may not write the store."
-    remedy = "Repair the disk, restart the daemon; nothing is retried. Type as the cell's user."
+    remedy = "Repair the disk, restart the daemon; nothing is retried. Use the cell's user account."
 
 
 class StoreLocked(RecordsError):
@@ -169,8 +169,8 @@ class RunInterrupted(RecordsError):
 
     number = 821
     text = "A run was interrupted by the end of the daemon"
-    cause = "Comes when the daemon starts: it was killed, or the PC lost its power, in this run."
-    remedy = "Look at arm and part, see the detail; then Clear and Reset, which lifts the arm off."
+    cause = "Told when the daemon starts: in this run it was killed, or the PC lost its power."
+    remedy = "Look at arm and part as the detail says; then Clear and Reset: it lifts the arm off."
     reaction = Reaction.WARN
 
 

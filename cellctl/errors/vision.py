@@ -143,8 +143,8 @@ class DrawingMirrored(VisionError):
         "points into the part."
     )
     remedy = (
-        "Compare picture and drawing: give x of every hole the other sign where they are mirrored, "
-        "else correct `outward_axis`, or state it."
+        "Compare picture and drawing. If they are mirrored, give x of every hole the other sign; "
+        "if they are not, correct `outward_axis`, or state it."
     )
 
 

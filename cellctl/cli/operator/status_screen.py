@@ -33,8 +33,8 @@ _NEXT = {
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
 _NEXT_AFTER_PROCEDURE = (
-    "what the guide of the procedure asks for at its end, and see that nothing hangs in an open "
-    "gripper; then `cellctl reset`"
+    "do what the guide of the procedure asks for at its end, and see that nothing hangs in an "
+    "open gripper; then `cellctl reset`"
 )
 _NEXT_IN_IDLE = {
     "PRODUCTION": "`cellctl start --serial SERIAL`; before a procedure `cellctl mode maintenance`",

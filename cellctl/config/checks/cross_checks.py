@@ -113,9 +113,8 @@ def _pace(cell: CellConfig, found: Sequence[ConfigIssue]) -> Iterator[ConfigIssu
         if rate_hz < LEAST_RATE_HZ:
             # A longer silence would only make the guard blind.
             allowed = (
-                f"at least {LEAST_RATE_HZ:g} samples a second, for the guard to stop in time; two "
-                f"samples of this rate are {least_ms:g} ms apart, and stale_ms = "
-                f"{sensor.stale_ms:g}"
+                f"at least {LEAST_RATE_HZ:g} samples a second, for the guard to stop in time; at "
+                f"this rate two samples take {least_ms:g} ms, and stale_ms = {sensor.stale_ms:g}"
             )
             yield ConfigIssue(rate.key, rate.value, allowed)
             continue

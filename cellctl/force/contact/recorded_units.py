@@ -84,7 +84,7 @@ def impossible_forces(force_n: Array, most_n: float, columns: Sequence[str]) -> 
         return (
             f"{names}: at most {greatest_n:.3g} N, less than the noise of a sensor for the "
             f"{most_n:g} N of a good insertion; expected at least {_HARDLY_PRESSES * most_n:.3g} "
-            "N: another unit, such as kilonewtons for newtons?"
+            "N: another unit, such as kilonewtons for newtons, or a sensor that was not read?"
         )
     if greatest_n > _CRUSHES * most_n:
         return (

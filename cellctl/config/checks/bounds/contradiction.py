@@ -196,7 +196,8 @@ class _Search:
         missed = (self._missing(name, trial) for trial in trials)
         scale = abs(self._bound.missing)
         return any(
-            one is not None and abs(one - self._bound.missing) > 1e-6 * scale for one in missed
+            one is not None and abs(one - self._bound.missing) > _NO_CHANGE * scale
+            for one in missed
         )
 
     def _solved(self, name: str, value: float) -> float | None:

@@ -120,8 +120,8 @@ class ImageMirrored(ConnectorError):
         "the part as seen from its back."
     )
     remedy = (
-        "Restore the camera's settings that it was calibrated with; in the drawing, give x of "
-        "every place the other sign."
+        "If the image is mirrored, restore the settings with which the camera was calibrated. If "
+        "the drawing is, give x of every place in it the other sign. Not both."
     )
 
 
