@@ -16,10 +16,20 @@ class WrittenValue:
     allowed: str = ""
     """What it would have to be with all others as they are; empty where that is not known."""
 
+    @property
+    def accused(self) -> str:
+        """As what may be wrong in place of another value."""
+        place = "this" if self.line is None else f"line {self.line}"
+        return f"{place} is wrong: {self._words}"
+
     def __str__(self) -> str:
         place = "" if self.line is None else f"line {self.line}: "
+        return f"{place}{self._words}"
+
+    @property
+    def _words(self) -> str:
         wanted = f": {self.allowed}" if self.allowed else ""
-        return f"{place}{self.key} = {self.value}{wanted}"
+        return f"{self.key} = {self.value}{wanted}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,5 +48,5 @@ class ConfigIssue:
     def __str__(self) -> str:
         """Place, value and what is allowed, in one line."""
         written = WrittenValue(self.key, self.value, self.line)
-        others = "".join(f"; or wrong is {other}" for other in self.against)
+        others = "".join(f"; or {other.accused}" for other in self.against)
         return f"{written}: {self.allowed}{others}"

@@ -165,7 +165,8 @@ def _nearest_good(over: Over, tool_T_taught: RigidTransform) -> RigidTransform:
 
 def _height(over: Over, height_mm: float) -> Iterator[WrittenValue]:
     if over.height_mm is not None:
-        wanted = f"about {height_mm:.0f}" if height_mm > 0.0 else ""
+        # A tool at its place, or in it, was at no height that anybody can have measured.
+        wanted = f"about {height_mm:.0f}" if round(height_mm) > 0 else ""
         key = f"{over.key}.taught_above_mm"
         yield WrittenValue(key, f"{over.height_mm:g}", allowed=wanted)
 

@@ -48,7 +48,7 @@ def test_a_pose_10_degrees_off_is_named_with_all_that_it_contradicts(tmp_path: P
     assert done.exit_code == 1
     assert "no other one decides which is wrong" in done.output
     assert "line 22: robots.main.poses_deg.deck_measure = [0.0, -52.76637" in done.output
-    assert "line 169: recipes.0.flange_T_deck = [0.0, 0.0, 502.0" in done.output
+    assert "recipes.0.flange_T_deck = [0.0, 0.0, 502.0" in done.output
     assert "did you mean" not in done.output
 
 

@@ -74,9 +74,9 @@ def above_issues(
         deck = _written(recipe, key, "flange_T_deck", base_T_flange.inv() * base_T_frame * above)
         turned_deg = np.degrees(place.rotation.magnitude())
         allowed = (
-            f"below the deck at the taught pose {DECK_MEASURE}, within {BESIDE_MM:g} "
-            f"mm and {TURNED_DEG:g} deg; the deck is at x {x_mm:.0f}, y {y_mm:.0f} mm of the "
-            f"frame, turned by {turned_deg:.0f} deg. Or teach {DECK_MEASURE} again"
+            f"{frame.allowed}: below the deck at the taught pose {DECK_MEASURE}, within "
+            f"{BESIDE_MM:g} mm and {TURNED_DEG:g} deg; the deck is at x {x_mm:.0f}, y {y_mm:.0f} "
+            f"mm of the frame, turned by {turned_deg:.0f} deg. Or teach {DECK_MEASURE} again"
         )
         yield ConfigIssue(frame.key, frame.value, allowed, against=(deck, _taught(cell, main)))
 

@@ -45,3 +45,14 @@ def test_nobody_aligns_a_round_pin_about_its_axis(
     new = old.replace("0.0, 0.0, 0.0]", f"{turns_deg}]")
     found = problems_before_commissioning(written(tmp_path, name, old, new))
     assert [one.key for one in found] == ([] if good else ["robots.arm.poses_deg.above_hole"])
+
+
+@pytest.mark.parametrize(("plug_mm", "wanted"), [(220.0, "about 40"), (260.0, ""), (290.0, "")])
+def test_nobody_is_asked_for_a_height_at_which_no_tool_was(
+    tmp_path: Path, plug_mm: float, wanted: str
+) -> None:
+    old = "flange_T_plug = [0.0, 0.0, 200.0"
+    path = written(tmp_path, "antenna.toml", old, old.replace("200.0", str(plug_mm)))
+    tray = problems_before_commissioning(path)[0]
+    height = next(one for one in tray.against if one.key.endswith("taught_above_mm"))
+    assert (tray.key, height.allowed) == ("robots.arm.poses_deg.above_tray", wanted)
