@@ -119,6 +119,12 @@ def _robot(app: typer.Typer) -> None:
     app.command("robot", rich_help_panel=_CELL)(robot)
 
 
+def _keys(app: typer.Typer) -> None:
+    from cellctl.cli.commissioning.keys import keys
+
+    app.command("keys", rich_help_panel=_CELL)(keys)
+
+
 def _teach(app: typer.Typer) -> None:
     from cellctl.cli.commissioning.teach import teach
 
@@ -221,6 +227,7 @@ _ADD: Mapping[str, Callable[[typer.Typer], None]] = {
     "demo": _demo,
     "robot": _robot,
     "teach": _teach,
+    "keys": _keys,
     "service-limits": _service_limits,
     "grab": _grab,
     "focus": _focus,

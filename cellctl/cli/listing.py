@@ -23,6 +23,7 @@ class Listed:
 
 CELL = (
     Listed("check", _CELL, "Check a cell file; exit code 1, with every error and what is allowed."),
+    Listed("keys", _CELL, "All keys of a cell file, with those of drivers and processes; or some."),
     Listed("doctor", _CELL, "Examine this PC: users, rights, clock, disk, network; with remedies."),
     Listed("run", _CELL, "Run the cell until SIGTERM or Ctrl-C."),
     Listed("demo", _CELL, "Start a fake cell, daemon and line PLC and run one job."),

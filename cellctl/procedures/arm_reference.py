@@ -11,8 +11,6 @@ from cellctl.calibration.arm_reference import (
 from cellctl.errors.robot import ArmReferenceMissing
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot, TargetTracker
-from cellctl.records.figures import Limit, figure
-from cellctl.records.run_recorder import RunRecorder
 from cellctl.runtime.procedure import ProcedureContext
 
 
@@ -59,6 +57,10 @@ async def check_arm_reference(
 
 async def _keep(context: ProcedureContext, offsets: Sequence[TargetOffset]) -> None:
     if context.record.number:
+        # Only here: whoever checks a cell file loads this module too, and not the database.
+        from cellctl.records.figures import Limit, figure
+        from cellctl.records.run_recorder import RunRecorder
+
         await RunRecorder(context.record.store, context.record.number).figures(
             figure(
                 f"target_offset.{one.name}",

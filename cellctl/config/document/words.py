@@ -46,7 +46,7 @@ def _boolean(item: ErrorDetails, node: Mapping[str, Any]) -> str:  # noqa: ARG00
 
 
 def _bounds(item: ErrorDetails, node: Mapping[str, Any]) -> str:  # noqa: ARG001
-    return _limits(node)
+    return limits(node)
 
 
 def _list(item: ErrorDetails, node: Mapping[str, Any]) -> str:  # noqa: ARG001
@@ -54,12 +54,12 @@ def _list(item: ErrorDetails, node: Mapping[str, Any]) -> str:  # noqa: ARG001
 
 
 def _count(item: ErrorDetails, node: Mapping[str, Any]) -> str:  # noqa: ARG001
-    length, limits = len(item["input"]), item["ctx"]
-    if "max_length" in limits:
-        most = limits["max_length"]
+    length, counts = len(item["input"]), item["ctx"]
+    if "max_length" in counts:
+        most = counts["max_length"]
         comma = "; a number has a decimal point, no comma" if length == 2 * most else ""
         return f"at most {most} entries, these are {length}{comma}"
-    return f"at least {limits['min_length']} entries, these are {length}"
+    return f"at least {counts['min_length']} entries, these are {length}"
 
 
 def _table(item: ErrorDetails, node: Mapping[str, Any]) -> str:  # noqa: ARG001
@@ -117,10 +117,10 @@ def _is_number(node: Mapping[str, Any]) -> bool:
 
 
 def _allowed(node: Mapping[str, Any]) -> str:
-    return f" (allowed: {limits})" if (limits := _limits(node)) else ""
+    return f" (allowed: {within})" if (within := limits(node)) else ""
 
 
-def _limits(node: Mapping[str, Any]) -> str:
+def limits(node: Mapping[str, Any]) -> str:
     """Both limits of a number, or the only one: pydantic names the one that was passed."""
     above, below = "exclusiveMinimum" in node, "exclusiveMaximum" in node
     lower = node.get("exclusiveMinimum", node.get("minimum"))
