@@ -22,6 +22,8 @@ LINE_FAILURES = (ModbusException, AssertionError, OSError)
 ARMS = ("main", "aux_1", "aux_2")
 DEVICES = (*ARMS, "force", "head_1", "head_2", "tracker", "world")
 POLL_S = 0.03
+PROCESSES_S = 20.0
+"""How long a process of the daemon is waited for that is to be killed or suspended."""
 RESTING = frozenset({"Aborted", "Stopped", "Held", "Completed", "Idle"})
 OVER = RESTING - {"Idle"}
 """A job that is found in one of these has ended."""
@@ -97,9 +99,12 @@ class Bench:
             self.daemon.process.send_signal(number)
             return
         word = {"guard": "cellctl.guard", "workers": "spawn_main"}[whom]
-        found = [pid for pid, line in self.daemon.descendants().items() if word in line]
-        if not found:
-            raise NotReached(f"no process of the daemon is called {word}")
+        # Workers that an earlier trial has killed are started anew when there is work for them.
+        deadline = time.monotonic() + PROCESSES_S
+        while not (found := [p for p, line in self.daemon.descendants().items() if word in line]):
+            if time.monotonic() > deadline:
+                raise NotReached(f"no process of the daemon is called {word}")
+            time.sleep(POLL_S)
         for pid in found:
             with suppress(ProcessLookupError):
                 os.kill(pid, number)
