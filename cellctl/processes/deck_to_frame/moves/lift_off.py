@@ -63,7 +63,9 @@ async def lift_off(cell: DeckCell) -> None:
             await move(cell.main.step(above, speed_m_s=first_m_s))
         # From a new zero: the first one was taken while the deck was pressed on the frame, so that
         # what is felt of a free deck is that force, and acceleration would come on top of it.
-        async with guarded(_tolerance(mating, 0.0)) as move:
+        # A deck that something yielding holds is pulled by then, not yet by enough to be noticed.
+        held_n = min(0.0, await pressed_n(cell.arm.guard, _INWARDS, mating.limit_force_n))
+        async with guarded(_tolerance(mating, held_n), hides_axial_n=-_INWARDS * held_n) as move:
             await _rise(cell, mating, base_T_flange, away, move)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault
