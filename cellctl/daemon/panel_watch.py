@@ -76,7 +76,10 @@ class PanelWatch:
             return kind(f"{name}, while it stood: {', '.join(reasons)}")
         if not state.stop_latched:
             self._released.add(name)
-        elif state.unasked_latch and name in self._released and not self._stopped_by_guard(name):
+        elif self._stopped_by_guard(name):
+            # Whoever goes on after a touch releases the guard first and then the arm.
+            self._released.discard(name)
+        elif state.unasked_latch and name in self._released:
             return NotRearmed(f"{name}, while it stood: {state.unasked_latch}")
         return None
 

@@ -113,9 +113,11 @@ async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip |
     watching = asyncio.create_task(_tripped(guard))
     try:
         await asyncio.wait({moving, watching}, return_when=asyncio.FIRST_COMPLETED)
-        if watching.done():
+        # Also where the guard has tripped in the moment in which the robot arrived.
+        if guard.trip is not None:
             # The guard's stop went over its own channel. The daemon's goes over another one, and
-            # returns only when the robot confirms that it stands.
+            # returns only when the robot confirms that it stands. Without it nobody here has asked
+            # for the stop that is latched, which is a fault of its own.
             await _second_stop(robot, guard)
         return await _outcome(robot, guard, moving)
     finally:
@@ -140,7 +142,6 @@ async def _outcome(
             fault.add_note(f"the guard felt it too: {trip.detail}")
             raise
         return trip
-    # Not None: the guard may have tripped in the moment in which the robot arrived.
     return guard.trip
 
 

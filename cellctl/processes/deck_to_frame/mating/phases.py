@@ -152,6 +152,9 @@ async def _reading_or_touch(attempt: Attempt) -> Reading | None:
         # A touch that comes while the arm stands at the end of its window is the contact that was
         # looked for.
         if trip is not None and trip.touch:
+            # As after a touch on the way: the guard's stop alone would be one that nobody here has
+            # asked for.
+            await attempt.robot.stop()
             return None
         raise
 

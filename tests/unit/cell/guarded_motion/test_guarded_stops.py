@@ -1,5 +1,6 @@
 """A guarded move that ends early: whether the force was the reason, or the robot itself."""
 
+import asyncio
 from typing import Any
 
 import pytest
@@ -7,7 +8,7 @@ import pytest
 from cellctl.cell.guarded_motion.guarded_moves import guarded
 from cellctl.errors.robot import MotionAborted
 from cellctl.guard.report import GuardTrip, TripReason
-from cellctl.interfaces import RobotMode
+from cellctl.interfaces import RobotMode, RobotState
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
 
@@ -50,3 +51,15 @@ async def test_a_robot_that_was_stopped_by_the_guard_met_something() -> None:
 async def test_without_a_trip_the_robots_own_fault_stands() -> None:
     with pytest.raises(MotionAborted):
         await move(braked_robot(emergency_stop=True), TinyGuard())
+
+
+async def test_an_arm_that_arrives_as_the_guard_trips_is_stopped_by_the_daemon_too() -> None:
+    robot, guard = StillRobot("main"), TinyGuard()
+
+    async def arrives() -> RobotState:
+        await asyncio.sleep(0)
+        guard.trip = SHAKEN
+        return robot.state()
+
+    assert await guarded(robot, guard, arrives()) is SHAKEN
+    assert robot.stops == 1, "or its latch would be one that nobody has asked for"
