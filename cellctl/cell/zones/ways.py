@@ -15,7 +15,8 @@ from cellctl.interfaces.robot import ForwardKinematics
 GREATEST_RAD = 4.0 * np.pi
 """No joint of an arm turns further from its zero: twice the ±360° of data sheets."""
 WAVER_M = 0.001
-"""From point to point of its way out an arm may come back by so much, as by its rounded joints."""
+"""On its way out an arm may come back by so much from the nearest that it was to the face, as by
+its rounded joints."""
 
 
 class Way(Protocol):
@@ -65,7 +66,9 @@ class FlangeWay:
         # Outside of its box no part of the arm reaches into the zone, so that it may then turn to
         # any side, as a second move from there might. What is not a number fails either way.
         first = beyond[0]
-        towards = np.all(np.diff(before_face_m[: first + 1]) <= WAVER_M)
+        # From the nearest so far and not from point to point, of which a joint move has many.
+        until_face_m = before_face_m[: first + 1]
+        towards = np.all(until_face_m - np.minimum.accumulate(until_face_m) <= WAVER_M)
         return bool(towards and not share.box.meets(self.points_m[first:]))
 
 

@@ -130,6 +130,9 @@ def way(*points: tuple[float, float, float]) -> FlangeWay:
         (way((1.2, 0.0, 0.0), (1.2, 0.0, 1.5)), False),
         (way((1.8, 0.0, 0.0), (1.2, 0.9, 0.0), (0.9, 0.0, 0.0)), True),
         (way((1.2, 0.0, 0.0), (1.21, 0.0, 0.0), (0.9, 0.0, 0.0)), False),
+        # Away from the face by a hair at each of many points, as a joint move may swing.
+        (way(*((1.2 + 0.0009 * n, 0.0, 0.0) for n in range(50)), (0.9, 0.0, 0.0)), False),
+        (way((1.2, 0.0, 0.0), (1.2009, 0.0, 0.0), (1.2, 0.0, 0.0), (0.9, 0.0, 0.0)), True),
         # Beyond the face it may turn to any side, but not past the box back into it.
         (way((1.2, 0.0, 0.0), (0.5, 0.0, 0.0), (0.9, 0.0, 0.0)), True),
         (way((1.2, 0.0, 0.0), (0.5, 0.0, 0.0), (0.5, 5.0, 0.0), (1.5, 5.0, 0.0)), True),
