@@ -31,10 +31,13 @@ class Plc(Section):
     """Modbus TCP towards the line."""
 
     host: str = "127.0.0.1"
+    """Address of this PC at which the line connects."""
     port: Annotated[int, Field(ge=0, le=65535)] = 502
+    """Below 1024 only the service may listen, or root."""
     word_order: Literal["big", "little"] = "big"
     """Order of the two words of a 32-bit value."""
     heartbeat_timeout_s: Annotated[float, Field(ge=0.5, le=10)] = 1.5
+    """Time without a new value of the line's heartbeat after which the line counts as lost."""
     allowed_clients: tuple[str, ...] = ()
     """Addresses or networks that may connect, ``0.0.0.0/0`` for any; may be empty where only this
     PC can connect. Names are not looked up."""
@@ -115,6 +118,7 @@ class CellConfig(Section):
     """Everything the daemon needs to know about one cell."""
 
     name: Annotated[str, Field(min_length=1, max_length=64)]
+    """Of this cell, on screens and reports, and among the cells of a fleet."""
     data_dir: str = "runs"
     """Run store and artefacts, relative to the working directory of the daemon."""
     calibration_dir: str = "calibration"

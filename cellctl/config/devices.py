@@ -25,7 +25,9 @@ class DeviceConfig(Section):
     """A device: which driver, its settings, and whether it is a fake."""
 
     driver: str
+    """Name of an installed driver of its kind."""
     simulated: bool = False
+    """True for a fake. The devices of a cell are all fakes, or none is."""
     settings: dict[str, Any] = Field(default_factory=dict)
     """Settings, which the driver's own ``Config`` checks."""
 
@@ -76,7 +78,9 @@ class WayConfig(Section):
     """A way between two taught poses, for where the straight one is not free."""
 
     start: DeviceName
+    """Taught pose from which it leads."""
     end: DeviceName
+    """Taught pose to which it leads; back, it needs a way of its own."""
     via_deg: Annotated[tuple[JointsDeg, ...], Field(min_length=1, max_length=20)]
     """Joints at which the arm stops on its way; between them it goes straight in the joints."""
 
@@ -97,6 +101,7 @@ class LoadConfig(Section):
     A person selects it on the controller; with a wrong one the arm sags and overshoots."""
 
     mass_kg: Annotated[float, Field(gt=0, le=2000)]
+    """Its mass, as selected on the controller."""
     com_mm: tuple[ComMm, ComMm, ComMm]
     """Its centre of mass in the flange."""
     tolerance_kg: Annotated[float, Field(gt=0, le=200)]
@@ -128,7 +133,9 @@ class RobotConfig(DeviceConfig):
     speed_percent: Annotated[int, Field(ge=1, le=100)] = 40
     """Speed of moves between taught poses, as a share of rated joint speed."""
     linear_speed_mm_s: Annotated[float, Field(ge=1, le=500)] = 50.0
+    """Speed of straight moves that touch nothing."""
     linear_acceleration_mm_s2: Annotated[float, Field(ge=1, le=2000)] = 200.0
+    """Their acceleration, and how they brake."""
     in_maintenance: MaintenanceSpeeds | None = None
     """Lower speeds for the mode in which people set up the cell; none: those above."""
     d1_mm: Annotated[float, Field(ge=100, le=3000)] | None = None

@@ -27,7 +27,9 @@ class Recipe(Section):
     process: Annotated[str, Field(min_length=1, max_length=64)]
     """Name of the process (entry point ``cellctl.process``) that carries it out."""
     id: Annotated[int, Field(ge=1, le=99)]
+    """Number by which the line asks for it."""
     name: Annotated[str, Field(min_length=1, max_length=64)]
+    """On screens and reports; a person may ask for it by this name, too."""
     roles: dict[DeviceName, DeviceName] = Field(default_factory=dict)
     """Device for each role of the process that the device of the role's own name does not take."""
     line_lost_in_contact: LineLostAction = LineLostAction.KEEP

@@ -18,7 +18,9 @@ class ZoneShare(Section):
     """
 
     min_mm: Corner
+    """The corner of the box with the least coordinates."""
     max_mm: Corner
+    """The opposite corner."""
     clear_poses: tuple[DeviceName, ...] = ()
     """Taught poses between which the arm moves by joints without coming into the zone. Only for a
     robot whose driver does not know its kinematics: all its other joint moves need the zone."""
