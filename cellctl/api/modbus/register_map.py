@@ -167,7 +167,7 @@ INPUT: tuple[Item, ...] = (
 )
 
 STATUS_BITS: tuple[tuple[str, str], ...] = (
-    ("ready", "Idle, and Start would be taken"),
+    ("ready", "Idle, and Start would be taken; off with heartbeat_lost"),
     ("busy", "a command was taken and has not ended"),
     ("done", "the last command taken has ended; see result"),
     ("error", "a fault is latched"),
