@@ -20,8 +20,8 @@ Matrix = tuple[tuple[float | None, ...], ...]
 """6 x 6 covariance in the order of ``Six``, in mm and degrees."""
 
 PRODUCTION, MAINTENANCE, DRY_RUN = "production", "maintenance", "dry run"
-"""Modes of the runs that make parts; of procedures, whose process it is too where they work on no
-recipe's parts; of runs that end before the first contact, and make none."""
+"""Modes of the runs that make parts; of procedures, whose process it is too, as a procedure may
+belong to several; of runs that end before the first contact, and make none."""
 
 
 class RunResult(StrEnum):

@@ -78,9 +78,11 @@ async def guarded_moves(
 
     # Frame and tare cannot be changed while armed: the signal would jump against the limits.
     await guard.disarm()
+    # Before load and frame are set, which drops the zero: where it does not settle, the next
+    # attempt still knows what the zero hides.
+    await settle(guard)
     await leave_weight_to_tare(guard)
     await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
-    await settle(guard)
     await guard.tare(TARE_S, hides_axial_n=hides_axial_n)
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))

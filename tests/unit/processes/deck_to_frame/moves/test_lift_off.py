@@ -1,12 +1,13 @@
 """Reset lifts a deck off its seat under the guard; what holds it is a fault, and it stays."""
 
 import asyncio
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cellctl.daemon.supervision import LinkMonitor
-from cellctl.errors.force import LiftOffHeld
+from cellctl.errors.force import LiftOffHeld, NotSettled
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
@@ -102,4 +103,15 @@ async def test_a_deck_that_holds_a_full_pull_is_not_pulled_again(bench: Bench) -
     for _ in range(2):
         with pytest.raises(LiftOffHeld, match="pulled with 52 N already, allowed 50 N"):
             await lift_off(bench.deck)
+    assert bench.cell.main.moves == []
+
+
+async def test_a_load_that_swings_leaves_the_pull_known(bench: Bench) -> None:
+    bench.cell.main.flange = bench.flange_over_seat(0.0)
+    guard = bench.cell.guard
+    guard.raw, guard.hidden_axial_n = guard.raw * 0.05, -30.0
+    guard.settling = replace(guard.settling, timeout_s=0.0)
+    with pytest.raises(NotSettled):
+        await lift_off(bench.deck)
+    assert guard.hidden_axial_n == -30.0
     assert bench.cell.main.moves == []
