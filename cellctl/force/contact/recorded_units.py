@@ -72,7 +72,7 @@ def impossible_depths(depth_m: Array, seat_m: float, column: str) -> str | None:
         return (
             f"{column} stays within {farthest_m / MM:.4g} mm of the first touch, of a seat at "
             f"{seat_m / MM:.4g} mm; expected a way in, or one from above: another unit, such as "
-            "metres for millimetres?"
+            "metres for millimetres, or only the touch of a part that did not go in?"
         )
     return None
 
