@@ -8,6 +8,7 @@ from cellctl import log
 from cellctl.calibration.checks import Checks, checks_from_record
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
+from cellctl.errors.records import RecordsError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import Figure, RunResult
 from cellctl.records.figures import Limit, figure
@@ -104,9 +105,7 @@ class MaintenanceJob(Job):
         """
         for warning in outcome.warnings:
             _log.warning("calibration", item=outcome.kind.name, warning=warning)
-        # Before the verdict: by how much a bad result is bad belongs into the record of its run.
-        if self.run_number:
-            await RunRecorder(self._store, self.run_number).figures(_figures(outcome))
+        await self._keep_figures(outcome)
         if not outcome.passed:
             reasons = "; ".join(_failed_checks(outcome)) or "see the record"
             # Kept, so that somebody can see from its picture and residuals why it failed. A disk
@@ -129,6 +128,18 @@ class MaintenanceJob(Job):
             await RunRecorder(self._store, self.run_number).document("calibration", detail)
         await self._store.do(RunStore.audit, self._who, "calibration stored", detail)
         _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
+
+    async def _keep_figures(self, outcome: ProcedureOutcome) -> None:
+        """By how much a bad result is bad belongs into the record of its run, too."""
+        if not self.run_number:
+            return
+        try:
+            await RunRecorder(self._store, self.run_number).figures(_figures(outcome))
+        except RecordsError as error:
+            # A disk that refuses them must not hide a bad verdict.
+            if outcome.passed:
+                raise
+            _log.error("figures not kept", run=self.run_number, fault=str(error))
 
     async def _put_aside(self, outcome: ProcedureOutcome) -> str:
         try:

@@ -7,8 +7,10 @@ import pytest
 
 from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.calibration import ResultOutOfLimits
+from cellctl.errors.records import RecordNotWritten
 from cellctl.processes.deck_to_frame.calibrations import STEREO_HEAD_1
 from cellctl.records.entries import RunResult, Verdict
+from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.runtime.steps import HeldMeanwhile
@@ -105,6 +107,24 @@ async def test_a_bad_result_leaves_its_figures_in_its_run(
         "head_1.rms": (0.31, "px", Verdict.FAIL),
         "head_1.views": (24.0, "", Verdict.PASS),
     }
+
+
+async def test_a_bad_result_keeps_its_verdict_when_its_figures_cannot_be_written(
+    rig: ProcedureRig, procedure: list[object], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async def refuse(*_: object) -> None:
+        raise RecordNotWritten("disk full")
+
+    job = rig.job(101)
+    await job.start()
+    monkeypatch.setattr(RunRecorder, "figures", refuse)
+    procedure.append(outcome(rig, passed=False))
+    with pytest.raises(ResultOutOfLimits, match=r"rms 0\.31"):
+        await job.execute()
+    procedure.append(replace(outcome(rig), record=outcome(rig).record | {"checks": CHECKS[1:]}))
+    with pytest.raises(RecordNotWritten):
+        await job.execute()
+    await job.close(RunResult.ABORTED, None)
 
 
 async def test_a_bad_result_keeps_its_reason_when_it_cannot_be_put_aside(
