@@ -121,7 +121,7 @@ async def test_a_bad_result_keeps_its_verdict_when_its_figures_cannot_be_written
     procedure.append(outcome(rig, passed=False))
     with pytest.raises(ResultOutOfLimits, match=r"rms 0\.31"):
         await job.execute()
-    procedure.append(replace(outcome(rig), record=outcome(rig).record | {"checks": CHECKS[1:]}))
+    procedure.append(replace(outcome(rig), record={**outcome(rig).record, "checks": CHECKS[1:]}))
     with pytest.raises(RecordNotWritten):
         await job.execute()
     await job.close(RunResult.ABORTED, None)
