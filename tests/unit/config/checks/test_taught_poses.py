@@ -31,8 +31,8 @@ def test_the_turns_of_the_base_frame_are_held_against_the_workspace(tmp_path: Pa
 
 
 def with_way(folder: Path, end: str, via_deg: str) -> Path:
-    way = f'ways = [{{ start = "home", end = "{end}", via_deg = [{via_deg}] }}]'
-    return devices_only(folder, "[robots.main]\n", f"[robots.main]\n{way}\n")
+    stated = 'end = "deck_measure"\nvia_deg = [[0.0, -90.0, 120.0, 0.0, 84.0, 90.0]]'
+    return devices_only(folder, stated, f'end = "{end}"\nvia_deg = [{via_deg}]')
 
 
 def test_a_way_leads_from_one_taught_pose_to_another(tmp_path: Path) -> None:
