@@ -18,6 +18,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
+from rich.console import Console
 from rich.progress import track
 
 from benchmarks.insertion.cycles import CycleCell
@@ -49,6 +50,14 @@ def shipped_cell(name: str) -> CycleCell:
 def pin_cell() -> CycleCell:
     """The shipped cell of the pin."""
     return shipped_cell("pin")
+
+
+def exit_code_of(console: Console, found: Iterable[tuple[str, Sequence[str]]]) -> int:
+    """Say what is wrong with each result, by its name; 1 where anything is, else 0."""
+    wrong = [f"{name}: {words}" for name, several in found for words in several]
+    for line in wrong:
+        console.print(line)
+    return 1 if wrong else 0
 
 
 def parser_of(text: str | None, what: str, trials: int) -> argparse.ArgumentParser:

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
-from benchmarks.insertion.farmed import Line, farmed, parser_of
+from benchmarks.insertion.farmed import Line, exit_code_of, farmed, parser_of
 from benchmarks.insertion.random_tasks.tasks import RandomTask, random_task
 from benchmarks.insertion.random_tasks.truths import Truth
 from benchmarks.insertion.wilson import wilson_bounds
@@ -57,10 +57,8 @@ def main() -> int:
     swept = farmed(sweep_task, jobs, "tasks", LINE, found)
     console = Console(width=150)
     console.print(table(swept))
-    for one in swept:
-        for words in one.found:
-            console.print(f"seed {one.seed} ({one.truth}; {one.task}): {words}")
-    return 1 if any(one.found for one in swept) else 0
+    named = ((f"seed {one.seed} ({one.truth}; {one.task})", one.found) for one in swept)
+    return exit_code_of(console, named)
 
 
 def sweep_task(seed: int) -> SweptTask:

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.insertion.contact_traps import ContactTrap, TrapState, run_contact_trap
-from benchmarks.insertion.farmed import Line, farmed, jobs_of, parser_of, pin_cell
+from benchmarks.insertion.farmed import Line, exit_code_of, farmed, jobs_of, parser_of, pin_cell
 from benchmarks.insertion.wilson import wilson_bounds
 
 TRIALS, QUICK_TRIALS = 125, 2
@@ -30,10 +30,8 @@ def main() -> int:
     traps = farmed(_run, jobs_of(TrapState, found.seed, trials), "traps", LINE, found)
     console = Console(width=140)
     console.print(table(traps))
-    for trap in traps:
-        for words in trap.found:
-            console.print(f"{trap.state.value}, seed {trap.seed}: {words}")
-    return 1 if any(trap.found for trap in traps) else 0
+    named = ((f"{trap.state.value}, seed {trap.seed}", trap.found) for trap in traps)
+    return exit_code_of(console, named)
 
 
 def _run(job: Job) -> ContactTrap:

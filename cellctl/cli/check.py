@@ -139,17 +139,12 @@ def _show_findings(console: Console, cell_file: Path, found: Sequence[ConfigIssu
     errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
     console.print(f"{cell_file}: {errors}", style="bold red")
     for problem in found:
-        console.print(f"F{problem.number} {_where(problem)}")
+        console.print(f"F{problem.number} {problem.written}")
         console.print(f"     {problem.allowed}")
         if problem.against:
             console.print(f"     {_UNDECIDED}")
         for other in problem.against:
             console.print(f"       {other}")
-
-
-def _where(issue: ConfigIssue) -> str:
-    place = "" if issue.line is None else f"line {issue.line}: "
-    return f"{place}{issue.key} = {issue.value}"
 
 
 def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Examination) -> None:
@@ -177,7 +172,7 @@ def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Ex
         # Last, where they are read.
         console.print("Look at these again; each may be meant as it stands:", style="yellow")
     for remark in examined.remarks:
-        console.print(f"  {_where(remark)}", style="yellow")
+        console.print(f"  {remark.written}", style="yellow")
         console.print(f"     {remark.allowed}", style="yellow")
 
 

@@ -45,8 +45,12 @@ class ConfigIssue:
     against: tuple[WrittenValue, ...] = ()
     """What this value contradicts, where nothing decides which of them is wrong."""
 
+    @property
+    def written(self) -> WrittenValue:
+        """What is wrong, without what is allowed."""
+        return WrittenValue(self.key, self.value, self.line)
+
     def __str__(self) -> str:
         """Place, value and what is allowed, in one line."""
-        written = WrittenValue(self.key, self.value, self.line)
         others = "".join(f"; or {other.accused}" for other in self.against)
-        return f"{written}: {self.allowed}{others}"
+        return f"{self.written}: {self.allowed}{others}"

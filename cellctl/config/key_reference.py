@@ -18,6 +18,7 @@ from pydantic.fields import FieldInfo
 from cellctl import plugins
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import GROUPS
+from cellctl.config.document.findings import resolved
 from cellctl.config.document.words import entries, limits
 from cellctl.config.process_definition import process_definition
 
@@ -97,7 +98,7 @@ def _tables(
             continue
         inner = _inner(field.annotation)
         if inner is None:
-            node = _resolved(schema["properties"][name], schema)
+            node = resolved(schema["properties"][name], schema)
             keys.append(Key(name, _what(node), _default(field), meanings.get(name, "")))
         else:
             inside.append((name, *inner))
@@ -125,16 +126,6 @@ def _inner(annotation: Any) -> tuple[str, bool, type[BaseModel]] | None:
         found = _inner(arguments[0])
         return None if found is None else ("", True, found[2])
     return None
-
-
-def _resolved(node: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Part of a schema without references; of what may be absent the part that may be written."""
-    if "$ref" in node:
-        return _resolved(schema["$defs"][node["$ref"].rpartition("/")[2]], schema)
-    for one in node.get("anyOf", ()):
-        if one.get("type") != "null":
-            return _resolved(one, schema)
-    return node
 
 
 def _what(node: Mapping[str, Any]) -> str:

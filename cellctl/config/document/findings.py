@@ -111,7 +111,7 @@ def _at(raw: object, loc: tuple[int | str, ...], otherwise: object) -> object:
 
 def _node(schema: Mapping[str, Any], loc: tuple[int | str, ...]) -> Mapping[str, Any]:
     """The part of a JSON schema that describes a place; empty where it says nothing of it."""
-    node = _resolved(schema, schema)
+    node = resolved(schema, schema)
     for part in loc:
         if isinstance(part, int):
             items = node.get("prefixItems", [])
@@ -120,11 +120,11 @@ def _node(schema: Mapping[str, Any], loc: tuple[int | str, ...]) -> Mapping[str,
             child = node.get("properties", {}).get(part, node.get("additionalProperties", {}))
             if not child and "patternProperties" in node:
                 child = next(iter(node["patternProperties"].values()))
-        node = _resolved(child if isinstance(child, Mapping) else {}, schema)
+        node = resolved(child if isinstance(child, Mapping) else {}, schema)
     return node
 
 
-def _resolved(node: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any]:
+def resolved(node: Mapping[str, Any], schema: Mapping[str, Any]) -> Mapping[str, Any]:
     """The node itself instead of a reference to it; of "this or nothing", this."""
     while True:
         if "$ref" in node:

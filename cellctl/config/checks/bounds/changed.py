@@ -23,7 +23,7 @@ def figures(cell: CellConfig, recipe: Recipe, key: str) -> dict[str, Any]:
         name: value
         for path, section in sections.items()
         for name, value in leaves(section, f"{path}.")
-        if _is_number(value) or (isinstance(value, list | tuple) and _all_numbers(value))
+        if is_number(value) or (isinstance(value, list | tuple) and _all_numbers(value))
     }
 
 
@@ -53,9 +53,10 @@ def _replaced(section: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
     return section
 
 
-def _is_number(value: object) -> bool:
+def is_number(value: object) -> bool:
+    """Whether a value is a single number; true and false are none."""
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 def _all_numbers(values: list[Any] | tuple[Any, ...]) -> bool:
-    return bool(values) and all(_is_number(one) for one in values)
+    return bool(values) and all(is_number(one) for one in values)

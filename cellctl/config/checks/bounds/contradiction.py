@@ -12,7 +12,7 @@ from typing import Any
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound, at_least, at_most
-from cellctl.config.checks.bounds.changed import figures, with_figure
+from cellctl.config.checks.bounds.changed import figures, is_number, with_figure
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.config.recipe import Recipe
 
@@ -163,15 +163,15 @@ class _Search:
         limit = bound.least if bound.is_low else bound.most
         assert limit is not None
         value = f"{bound.value:g}"
-        is_figure = _is_figure(self._figures.get(bound.key))
+        is_figure = is_number(self._figures.get(bound.key))
         if is_figure and not self._is_possible(bound.key, limit):
             return _Part(bound.key, value)
         return _part(bound.key, value, bound.limit, raised=bound.is_low)
 
     def _other(self, name: str) -> _Part:
         value = self._figures[name]
-        shown = f"{value:g}" if _is_figure(value) else str(list(value))
-        limit = self._solved(name, value) if _is_figure(value) else None
+        shown = f"{value:g}" if is_number(value) else str(list(value))
+        limit = self._solved(name, value) if is_number(value) else None
         if limit is None:
             return _Part(name, shown)
         raised = limit > value
@@ -185,7 +185,7 @@ class _Search:
         return same[self._nth].missing if len(same) > self._nth else None
 
     def _takes_part(self, name: str, value: Any) -> bool:
-        if _is_figure(value):
+        if is_number(value):
             little = _LITTLE * (abs(value) or 1.0)
             trials: list[Any] = [value + little, value - little]
         else:
@@ -231,7 +231,3 @@ def _part(name: str, value: str, limit: str, *, raised: bool) -> _Part:
     last = name.rsplit(".", 1)[-1]
     risky = last in (_MORE_IS_LESS_SAFE if raised else _LESS_IS_LESS_SAFE)
     return _Part(name, value, limit, _LESS_SAFE if risky else "")
-
-
-def _is_figure(value: Any) -> bool:
-    return isinstance(value, int | float)
