@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from cellctl.atomic_files import write_durably
 from cellctl.errors.config import OutputNotWritten
+from cellctl.files.atomic_files import write_durably
 
 
 def write_file(path: Path, content: bytes) -> None:

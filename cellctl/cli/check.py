@@ -23,6 +23,7 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.roles import lacking_roles
+from cellctl.files.hand_written import read_hand_written
 
 if TYPE_CHECKING:
     from cellctl.cli.connecting.answer import Answer
@@ -180,7 +181,7 @@ def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
     """Places that a template leaves to whoever commissions the cell."""
     # The daemon takes such a file, which the programs that rehearse a cell also do; whoever checks
     # it before a first start must not be told that it is good.
-    for number in left_open(cell_file.read_text(encoding="utf-8-sig")):
+    for number in left_open(read_hand_written(cell_file)):
         allowed = "the value of this cell, and the mark taken away"
         yield ConfigIssue("(mark of the template)", FILL_IN, allowed, line=number)
 

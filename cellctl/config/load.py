@@ -28,6 +28,7 @@ from cellctl.config.recipe import Recipe
 from cellctl.config.roles import lacking
 from cellctl.errors.config import ConfigInvalid, ConfigUnreadable, UnknownDriver
 from cellctl.fault_catalogue import misnumbered
+from cellctl.files.hand_written import read_hand_written
 from cellctl.spelling import nearest
 
 
@@ -177,8 +178,7 @@ def _of_another_device(issue: ConfigIssue, raw: Mapping[str, Any]) -> ConfigIssu
 
 def _read(path: Path) -> str:
     try:
-        # Editors of Windows put a mark before the first character of a file.
-        return path.read_text(encoding="utf-8-sig")
+        return read_hand_written(path)
     except (OSError, UnicodeDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from pydantic import BaseModel, ValidationError
 
 from cellctl.config.base import WrittenPose
+from cellctl.files.hand_written import read_hand_written
 
 
 class _Arm(BaseModel):
@@ -26,7 +27,7 @@ def stated_bases(cell_file: Path) -> Mapping[str, WrittenPose]:
     """``cell_T_base`` of each robot in the model of a cell file; empty where there is no model, or
     one that planning would refuse."""
     try:
-        raw = tomllib.loads(model_path(cell_file).read_text(encoding="utf-8-sig"))
+        raw = tomllib.loads(read_hand_written(model_path(cell_file)))
         arms = _Arms.model_validate(raw)
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError, ValidationError):
         return {}

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from cellctl.atomic_files import write_durably
 from cellctl.errors.calibration import CalibrationNotStored
+from cellctl.files.atomic_files import write_durably
 
 
 @contextmanager

@@ -8,9 +8,9 @@ import json
 from datetime import UTC, datetime
 from pathlib import Path
 
-from cellctl.atomic_files import remove_durably
 from cellctl.calibration.store.calibration_io import raising_not_stored, write_file
 from cellctl.errors.calibration import CalibrationInvalidated
+from cellctl.files.atomic_files import remove_durably
 
 SUFFIX = ".invalidated"
 

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from cellctl import log
-from cellctl.atomic_files import require_writable
 from cellctl.calibration.store.calibration_io import raising_not_stored, write_file
 from cellctl.calibration.store.envelope import (
     StoredCalibration,
@@ -24,6 +23,7 @@ from cellctl.calibration.store.validity import ValidityClock
 from cellctl.clock import utc_now
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationExpired, CalibrationMissing
+from cellctl.files.atomic_files import require_writable
 from cellctl.version import software
 
 _log = log.get(__name__)

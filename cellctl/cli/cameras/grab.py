@@ -11,7 +11,6 @@ import cv2
 import typer
 from rich.progress import Progress
 
-from cellctl.atomic_files import make_folder_durably
 from cellctl.calibration.output_file import write_file
 from cellctl.cli.cameras.opening import (
     CameraName,
@@ -24,6 +23,7 @@ from cellctl.cli.cameras.opening import (
 )
 from cellctl.clock import utc_now
 from cellctl.errors.config import FileInvalid
+from cellctl.files.atomic_files import make_folder_durably
 from cellctl.interfaces.camera import PixelFormat
 
 _QUICK = [cv2.IMWRITE_PNG_COMPRESSION, 1]

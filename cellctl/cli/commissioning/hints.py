@@ -3,8 +3,8 @@
 import grp
 from pathlib import Path
 
-from cellctl.atomic_files import may_write
 from cellctl.config import CellConfig
+from cellctl.files.atomic_files import may_write
 
 
 def hints_of_this_pc(cell: CellConfig, folder: Path) -> list[str]:

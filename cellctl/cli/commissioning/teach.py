@@ -10,7 +10,6 @@ import numpy as np
 import typer
 from rich.console import Console
 
-from cellctl.atomic_files import write_durably
 from cellctl.cell.robot_reports import joints_deg, state_as_json
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.commissioning.one_robot import cell_with, connected
@@ -21,6 +20,8 @@ from cellctl.config.document.lines import key_lines
 from cellctl.config.document.taught_pose_text import pose_line, with_pose
 from cellctl.config.load import placed
 from cellctl.errors.config import ConfigInvalid
+from cellctl.files.atomic_files import write_durably
+from cellctl.files.hand_written import read_hand_written
 from cellctl.interfaces import Robot, RobotState
 from cellctl.spelling import nearest
 
@@ -134,7 +135,7 @@ def write_pose(cell_file: Path, robot: str, pose: str, values_deg: Sequence[floa
     ``FileInvalid`` when there is no place for the pose, ``OSError``.
     """
     remark = f"taught {utc_now():%Y-%m-%d %H:%M} UTC"
-    before = cell_file.read_text(encoding="utf-8-sig")
+    before = read_hand_written(cell_file)
     after = with_pose(before, robot, pose, values_deg, remark)
     known = {(one.key, one.value) for one in problems_before_commissioning(cell_file, before)}
     found = problems_before_commissioning(cell_file, after)

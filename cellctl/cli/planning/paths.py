@@ -7,6 +7,7 @@ import typer
 
 from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
+from cellctl.files.hand_written import read_hand_written
 
 Out = Annotated[
     Path | None, typer.Option("--out", help="Write the cell file with the ways here; else none.")
@@ -47,7 +48,7 @@ def paths(
     for fault in faults:
         console.print(str(fault))
     if out is not None:
-        text = cell_file.read_text(encoding="utf-8-sig")
+        text = read_hand_written(cell_file)
         write_file(out, with_ways_written(text, planned).encode())
         console.print(f"written: {out}; read it, and try each way at low speed")
     if faults:

@@ -8,6 +8,7 @@ import typer
 from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 from cellctl.errors.config import NoViewsStated
+from cellctl.files.hand_written import read_hand_written
 
 Out = Annotated[
     Path | None, typer.Option("--out", help="Write the cell file with the poses here; else none.")
@@ -41,6 +42,6 @@ def viewpoints(cell_file: CellFile, model: ModelFile = None, out: Out = None) ->
     if not planned:
         raise NoViewsStated(f"{cell_file}")
     if out is not None:
-        text = cell_file.read_text(encoding="utf-8-sig")
+        text = read_hand_written(cell_file)
         write_file(out, with_viewpoints_written(text, planned).encode())
         console.print(f"written: {out}; read it, try each pose at low speed, and calibrate there")

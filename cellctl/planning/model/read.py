@@ -18,6 +18,7 @@ from cellctl.errors.config import (
     HeadNotDescribed,
     SizeImplausible,
 )
+from cellctl.files.hand_written import read_hand_written
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.planning.model.document import (
     BodyKeys,
@@ -59,7 +60,7 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
 
 def _document(path: Path) -> ModelDocument:
     try:
-        raw = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        raw = tomllib.loads(read_hand_written(path))
     except FileNotFoundError as error:
         raise ConfigUnreadable(
             f"{path}: this cell has no model yet. Write one: where its arms stand, their bodies "

@@ -13,9 +13,9 @@ from pathlib import Path
 from sqlalchemy import Connection, text
 from sqlalchemy.orm import Session
 
-from cellctl.atomic_files import sync_folder
 from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
+from cellctl.files.atomic_files import sync_folder
 from cellctl.records.database.claimed_version import require_claimed
 from cellctl.records.database.ledger import seal_unsealed
 from cellctl.records.database.schema import Base, DocumentRow, LedgerRow

@@ -15,7 +15,6 @@ from sqlalchemy import URL, Engine, create_engine, event
 from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from cellctl.atomic_files import make_folder_durably
 from cellctl.errors.records import (
     RecordNotWritten,
     RunUnknown,
@@ -23,6 +22,7 @@ from cellctl.errors.records import (
     StoreTooNew,
     StoreUnavailable,
 )
+from cellctl.files.atomic_files import make_folder_durably
 from cellctl.records.database import migration
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 

@@ -3,8 +3,8 @@
 import hashlib
 from pathlib import Path
 
-from cellctl.atomic_files import write_durably
 from cellctl.errors.records import ArtefactDamaged, RecordNotWritten
+from cellctl.files.atomic_files import write_durably
 
 CELL_FILE = "cell.json"
 """Name of the artefact with the cell file that a run was made with."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pydantic import AwareDatetime, BaseModel, ConfigDict, ValidationError
 
-from cellctl.atomic_files import write_durably
+from cellctl.files.atomic_files import write_durably
 
 FOLDER = Path("/run/cellctl-forward")
 """``RuntimeDirectory`` of the shipped unit."""

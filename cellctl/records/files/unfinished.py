@@ -5,8 +5,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from cellctl.atomic_files import make_folder_durably
 from cellctl.errors.records import RecordNotWritten
+from cellctl.files.atomic_files import make_folder_durably
 
 MOTION = "motion.mcap"
 """Name of a recording among the files of its run."""

@@ -8,9 +8,9 @@ from datetime import datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from cellctl.atomic_files import write_durably
 from cellctl.errors.config import OutputNotWritten
 from cellctl.errors.records import ExportFolderTaken, ValueRefused
+from cellctl.files.atomic_files import write_durably
 from cellctl.records.entered.gauges import part_verdict
 from cellctl.records.entered.notes import notes_of
 from cellctl.records.entries import RunRecord

@@ -10,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from cellctl.errors.vision import FeatureFileInvalid
+from cellctl.files.hand_written import hand_written
 from cellctl.geometry.pose import MM, Array
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.known_kinds import KINDS
@@ -46,7 +47,7 @@ def read_features(path: Path) -> FeatureFile:
 def parse_features(content: bytes, name: str) -> FeatureFile:
     """The content of a feature file of that name; raises ``FeatureFileInvalid``."""
     try:
-        data = tomllib.loads(content.decode("utf-8-sig"))
+        data = tomllib.loads(hand_written(content))
     except ValueError as error:
         raise FeatureFileInvalid(f"{name} is not TOML: {error}") from error
     try:

@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from cellctl.calibration.input_file import error_words
 from cellctl.errors.base import CellError
+from cellctl.files.hand_written import hand_written
 from cellctl.sealed_json import content_id
 
 PositiveMm = Annotated[float, Field(gt=0, le=1000)]
@@ -45,7 +46,7 @@ def parse_toml(content: bytes, name: str, model: type[M], invalid: type[CellErro
 def _understood(content: bytes, model: type[Table]) -> Table:
     # A check of a cell asks for its drawings some ten times, and to compare a pattern with its
     # mirror image takes most of the time.
-    return model.model_validate(as_tuples(tomllib.loads(content.decode("utf-8-sig"))))
+    return model.model_validate(as_tuples(tomllib.loads(hand_written(content))))
 
 
 def read_bytes(path: Path, invalid: type[CellError]) -> bytes:

@@ -10,6 +10,7 @@ import numpy as np
 
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.cell.contact_motion.ticks import MotionKind
+from cellctl.files.hand_written import hand_written
 from cellctl.force.contact.recorded_units import impossible_sampling
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
@@ -90,7 +91,7 @@ def parse_curve(data: bytes, *, force_on_hole: bool = False) -> PegCurve:
 
 def _csv_rows(data: bytes) -> list[dict[str, str]]:
     try:
-        text = data.decode("utf-8-sig")
+        text = hand_written(data)
     except UnicodeDecodeError as error:
         raise PegCurveInvalid(f"is neither MCAP nor text: {error}") from error
     head = text.partition("\n")[0]

@@ -11,6 +11,7 @@ from pydantic import Field, ValidationError
 from cellctl.calibration.input_file import error_words
 from cellctl.config.base import Section
 from cellctl.errors.config import FileInvalid
+from cellctl.files.hand_written import read_hand_written
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.plan.cycle_plan import fit_geometry, seat_limits
 from cellctl.processes.peg_in_hole.plan.task import FitGeometry
@@ -96,7 +97,7 @@ class TaskOfCurve:
 def read_part(path: Path) -> JudgedPart:
     """Raises ``FileInvalid`` with everything that is wrong."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = read_hand_written(path)
     except (OSError, UnicodeDecodeError) as error:
         raise FileInvalid(f"{path}: {error}") from error
     try:

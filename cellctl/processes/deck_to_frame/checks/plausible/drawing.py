@@ -7,6 +7,7 @@ import numpy as np
 
 from cellctl.config.document.lines import key_lines
 from cellctl.config.issue import ConfigIssue, WrittenValue
+from cellctl.files.hand_written import hand_written
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile, parse_features
@@ -75,5 +76,5 @@ def _drawing(part: str, written: str, recipe_key: str, folder: Path) -> PartDraw
         written,
         recipe_key,
         parse_features(content, str(path)),
-        key_lines(content.decode("utf-8-sig")),
+        key_lines(hand_written(content)),
     )

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from cellctl import atomic_files
-from cellctl.atomic_files import make_folder_durably, write_durably
+from cellctl.files import atomic_files
+from cellctl.files.atomic_files import make_folder_durably, write_durably
 
 
 @pytest.fixture
