@@ -1,5 +1,7 @@
 """The daemon's end of the shared memory: the newest sample, stretches of samples, the status."""
 
+from bisect import bisect_right
+
 import numpy as np
 
 from cellctl.guard import ring
@@ -90,11 +92,7 @@ class RingReader:
         return int(self._words[ring.HEAD])
 
     def _first_after(self, since_s: float, low: int, high: int) -> int:
-        """Index of the first sample after a time, by bisection."""
-        while low < high:
-            middle = (low + high) // 2
-            if self._ring[middle % self._slots]["time_s"] <= since_s:
-                low = middle + 1
-            else:
-                high = middle
-        return low
+        """Index of the first sample after a time."""
+        return bisect_right(
+            range(high), since_s, low, key=lambda index: self._ring[index % self._slots]["time_s"]
+        )

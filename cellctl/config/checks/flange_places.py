@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.checks.bounds.edge import farthest_allowed
 from cellctl.config.driver_settings import motion_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.box import Box
@@ -52,14 +53,9 @@ def deepest_mm(
     box = motion_bounds(cell.robots[robot]).flange_box
     if box is None or box.holds(flange_at(far_mm).translation):
         return far_mm
-    inside_mm, outside_mm = 0.0, far_mm
-    while outside_mm - inside_mm > _EXACT_MM:
-        middle_mm = (inside_mm + outside_mm) / 2.0
-        if box.holds(flange_at(middle_mm).translation):
-            inside_mm = middle_mm
-        else:
-            outside_mm = middle_mm
-    return inside_mm
+    return farthest_allowed(
+        0.0, far_mm, lambda way_mm: box.holds(flange_at(way_mm).translation), within=_EXACT_MM
+    )
 
 
 def box_of(robot: str, box: Box) -> WrittenValue:

@@ -8,11 +8,13 @@ would break another bound. What presses harder or waits longer comes last.
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound, at_least, at_most
 from cellctl.config.checks.bounds.changed import figures, is_number, with_figure
+from cellctl.config.checks.bounds.edge import farthest_allowed
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.config.recipe import Recipe
 
@@ -24,7 +26,10 @@ _LITTLE = 1e-3
 _NO_CHANGE = 1e-6
 """Share of what is missed, below which it has not changed."""
 _MOST_TIMES = 1e4
-_HALVINGS = 60
+"""Ways out are looked for up to so many times the written value, and down to such a part of it."""
+_EXACT = 1e-11
+"""Share to which a way out is found: finer than the digits by which ``at_least`` and ``at_most``
+tell a limit that is round from one that has to be rounded."""
 _MORE_IS_LESS_SAFE = frozenset(
     (
         "search_n",
@@ -204,20 +209,16 @@ class _Search:
         """The value nearest to the written one with which the bound is kept."""
         for times in (2.0, 10.0, 100.0, _MOST_TIMES):
             for far in (value / times, value * times):
-                if (missing := self._missing(name, far)) is not None and missing <= 0.0:
-                    near = self._bisected(name, value, far)
+                if self._keeps(name, far):
+                    within = _EXACT * min(abs(value), abs(far))
+                    near = farthest_allowed(far, value, partial(self._keeps, name), within=within)
                     return near if self._is_possible(name, near) else None
         return None
 
-    def _bisected(self, name: str, bad: float, good: float) -> float:
-        for _ in range(_HALVINGS):
-            middle = (bad + good) / 2.0
-            missing = self._missing(name, middle)
-            if missing is not None and missing <= 0.0:
-                good = middle
-            else:
-                bad = middle
-        return good
+    def _keeps(self, name: str, value: float) -> bool:
+        """Whether the bound is kept with another value."""
+        missing = self._missing(name, value)
+        return missing is not None and missing <= 0.0
 
     def _is_possible(self, name: str, value: float) -> bool:
         """Whether the key may have the value, and no bound is broken by it that was kept."""
