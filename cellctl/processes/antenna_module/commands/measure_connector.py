@@ -97,7 +97,7 @@ def measure(  # noqa: PLR0917 - the options of the command
 
 def _not_seen(connector: Connector) -> tuple[str, ...]:
     """What a mistake in the drawing would leave as it is in every picture."""
-    if not looks_alike_in_mirror(connector.positions_m, connector.diameter_m / 2.0):
+    if not looks_alike_in_mirror(connector):
         return ()
     return (
         "the contacts look the same in a mirror: no picture shows whether their names run the "

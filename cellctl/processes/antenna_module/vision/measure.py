@@ -289,7 +289,6 @@ def require_certain(fit: PlanarFit) -> None:
 
 
 def _warnings(connector: Connector, expected: PlanarExpectation | None) -> tuple[str, ...]:
-    drawn_m, reach_m = connector.positions_m, connector.diameter_m / 2.0
-    if expected is not None or not looks_alike_in_mirror(drawn_m, reach_m):
+    if expected is not None or not looks_alike_in_mirror(connector):
         return ()
     return ("neither marks nor an expected place: a mirrored image would not be noticed",)

@@ -1,5 +1,6 @@
 """Which spot is which contact, with contacts missing, spots too many, and patterns turned."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,12 +15,19 @@ from cellctl.processes.antenna_module.faults.connector import (
     ConnectorTurned,
     ImageMirrored,
 )
+from cellctl.processes.antenna_module.vision import matching
 from cellctl.processes.antenna_module.vision.choice import PlanarExpectation, choose
 from cellctl.processes.antenna_module.vision.contact_fit.spots import Spots
-from cellctl.processes.antenna_module.vision.matching import Placement, placements, rotation
+from cellctl.processes.antenna_module.vision.matching import (
+    Placement,
+    looks_alike_in_mirror,
+    placements,
+    rotation,
+)
 from cellctl.processes.antenna_module.vision.pattern import Candidates
 
-PLUG = read_connector(Path("config/connectors/micro-d-15-pins.toml")).positions_m
+CONNECTOR = read_connector(Path("config/connectors/micro-d-15-pins.toml"))
+PLUG = CONNECTOR.positions_m
 MARKS = read_marks(Path("config/connectors/gripper.toml")).positions_m
 SHIFT = np.array([0.4e-3, -0.3e-3])
 
@@ -89,3 +97,23 @@ def test_marks_tell_a_mirrored_image_with_one_of_them_lost() -> None:
 def test_marks_without_the_odd_one_are_refused() -> None:
     with pytest.raises(ConnectorAmbiguous):
         choose(candidates(MARKS, seen(MARKS, 3.0)[:4]), None, chiral=True)
+
+
+def test_a_plug_is_alike_in_a_mirror_unless_it_lacks_one_contact_of_a_pair() -> None:
+    keyed = np.delete(np.arange(len(PLUG)), 2)
+    names = tuple(CONNECTOR.contacts[index] for index in keyed)
+    assert looks_alike_in_mirror(replace(CONNECTOR))
+    assert not looks_alike_in_mirror(replace(CONNECTOR, contacts=names, positions_m=PLUG[keyed]))
+
+
+def test_a_drawing_is_compared_with_its_mirror_image_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    compared = []
+
+    def counted(drawing_m: Array, spots_m: Array, *, least: int, reach_m: float) -> list[Placement]:
+        compared.append(drawing_m)
+        return placements(drawing_m, spots_m, least=least, reach_m=reach_m)
+
+    monkeypatch.setattr(matching, "placements", counted)
+    plug = replace(CONNECTOR)
+    assert looks_alike_in_mirror(plug) == looks_alike_in_mirror(plug)
+    assert len(compared) == 1
