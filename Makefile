@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-page page-pictures bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
-	format lint types imports check test test-parallel test-version test-cell test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
+	format lint types imports check test test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
 
@@ -184,19 +184,19 @@ test: check
 
 # The tests are spread over the processors already; threads of BLAS beside them only wait for each
 # other, and waiting costs them a third of the processors' time.
-test-parallel test-version test-cell test-explore test-long coverage coverage-add: export OPENBLAS_NUM_THREADS = 1
+test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-add: export OPENBLAS_NUM_THREADS = 1
 
 # Many containers forbid Python to keep compiled modules. Here each of the programs that the tests
 # start would compile all of cellctl anew, and each worker all tests.
-test-parallel test-version test-cell test-explore test-long coverage coverage-add: export PYTHONDONTWRITEBYTECODE =
+test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-add: export PYTHONDONTWRITEBYTECODE =
 
 # Four workers fill two processors, since many tests wait: for programs, servers and timers. Not more
 # where there are more processors: time limits within tests are those of two.
 # What failed beside other tests is run once more, alone, unless it is more than a few.
 AGAIN := --last-failed --last-failed-no-failures none --most-again 3
 test-parallel: venv
-	$(BIN)/pytest -n 4 -m "not cell and not long" --durations 25 || \
-		$(BIN)/pytest -m "not cell and not long" $(AGAIN)
+	$(BIN)/pytest -n 4 -m "not cell and not long and not figures" --durations 25 || \
+		$(BIN)/pytest -m "not cell and not long and not figures" $(AGAIN)
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
 # or draws rests on numpy, scipy and OpenCV, of which the lock holds one version for all Pythons, and
@@ -205,12 +205,17 @@ COMPUTES := vision calibration force geometry planning processes procedures fake
 	cli/offline cli/planning records/report hmi/page
 WHERE_PYTHON_MATTERS := $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
 test-version: venv
-	$(BIN)/pytest -n 3 -m "not cell and not long" $(WHERE_PYTHON_MATTERS) || \
-		$(BIN)/pytest -m "not cell and not long" $(AGAIN) $(WHERE_PYTHON_MATTERS)
+	$(BIN)/pytest -n 3 -m "not cell and not long and not figures" $(WHERE_PYTHON_MATTERS) || \
+		$(BIN)/pytest -m "not cell and not long and not figures" $(AGAIN) $(WHERE_PYTHON_MATTERS)
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv
 	$(BIN)/pytest tests/cell -m "not long" --durations 25
+
+# Accuracy over many draws and sweeps over every key: what holds for all code, at more seconds than
+# whoever changes one part of it will wait. `.ci/run` runs them after `make test`.
+test-figures: venv
+	$(BIN)/pytest -n 3 -m "figures" --durations 25
 
 # New examples, and ten times as many, for every test that draws its own.
 test-explore: venv

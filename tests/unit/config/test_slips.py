@@ -52,13 +52,20 @@ def judged(
     return undecided, otherwise
 
 
-# The deck's moves are stated anew for each edit that passes, and most that pass are divided.
+# The standard test has the file that is read quickest. The deck's moves are stated anew for each edit
+# that passes, and most that pass are divided.
+_QUICK = "insertion-pin.toml"
 _LONG = {("deck.toml", "/10")}
-_SINGLE = [
-    pytest.param(name, slip, marks=pytest.mark.long if (name, slip) in _LONG else ())
-    for name in FILES
-    for slip in FACTORS
-]
+
+
+def _when(name: str, slip: str) -> tuple[pytest.MarkDecorator, ...]:
+    """When the sweep of a file is run: always, with the figures or before a release."""
+    if name == _QUICK:
+        return ()
+    return (pytest.mark.long if (name, slip) in _LONG else pytest.mark.figures,)
+
+
+_SINGLE = [pytest.param(name, slip, marks=_when(name, slip)) for name in FILES for slip in FACTORS]
 
 
 @pytest.mark.parametrize(("name", "slip"), _SINGLE)
