@@ -24,6 +24,7 @@ from cellctl.errors.camera import (
 from cellctl.errors.link import LinkLost, ReplyTimeout
 from drivers.camera.gige.config import GigeHeadConfig, Region, Selection
 from drivers.camera.gige.driver import GigeHead
+from drivers.camera.gige.library_process.image_memory import MOST_FREE
 from fakes.gentl.build import SOURCES, build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
 from tests.wire.gige.conftest import LEFT, RIGHT, camera, descriptors
@@ -256,12 +257,14 @@ async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
     async with GigeHead("head", settings) as head:
         await head.grab()
         before = await descriptors(head, fakes.opened(LEFT))
-        for _ in range(2):
+        # More failures than blocks that may wait for later images: how many of these there are
+        # depends on how soon the images before were let go of.
+        for _ in range(MOST_FREE + 1):
             fakes.inject(RIGHT, fault, 1)
             with pytest.raises((ImagesDamaged, ReplyTimeout)):
                 await head.grab()
         await head.grab()
-        assert await descriptors(head, fakes.opened(LEFT)) == before
+        assert await descriptors(head, fakes.opened(LEFT)) <= before + MOST_FREE
 
 
 async def test_an_image_that_comes_late_is_nobodys(producer: Path, fakes: FakeCameras) -> None:
