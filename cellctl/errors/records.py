@@ -181,8 +181,8 @@ class DiskNearlyFull(RecordsError):
     text = "Too little space on the disk for another record"
     cause = "The run store, or something else on the disk, has grown."
     remedy = "Nothing has moved. Make room: move the oldest runs with their store to an archive,"
-    remedy += " or give the store a larger disk."
-    reaction = Reaction.STOP
+    remedy += " or give the store a larger disk. Start is taken again as soon as there is room."
+    reaction = Reaction.WARN
 
 
 class RecordSilent(RecordsError):

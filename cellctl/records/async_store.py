@@ -10,6 +10,7 @@ from cellctl import log
 from cellctl.clock import now_s
 from cellctl.errors.records import RecordNotWritten, RecordsError, StoreLocked
 from cellctl.records.database.sessions import LOCK_WAIT_S
+from cellctl.records.files.disk_space import require_space
 from cellctl.records.files.raw_images import (
     MEDIA_TYPE,
     GreyImage,
@@ -46,6 +47,22 @@ class AsyncRunStore:
         self._keeping: set[asyncio.Task[None]] = set()
         self.fault: RecordNotWritten | None = None
         """The first write that did not reach the disk; the store takes no run after it."""
+        self.scarcity: RecordsError | None = None
+        """Why the disk had no room for another run when it was last looked at."""
+
+    @property
+    def refusal(self) -> RecordsError | None:
+        """Why the store takes no run now."""
+        return self.fault or self.scarcity
+
+    async def look_for_room(self) -> None:
+        """See whether the disk has room for another run; ``scarcity`` says why not."""
+        try:
+            await self.do(_require_space)
+        except RecordsError as error:
+            self.scarcity = error
+        else:
+            self.scarcity = None
 
     async def do(
         self, call: Callable[Concatenate[RunStore, P], R], *args: P.args, **kwargs: P.kwargs
@@ -126,3 +143,7 @@ class AsyncRunStore:
         self._images.shutdown(wait=True)
         self._thread.submit(self._store.close).result()
         self._thread.shutdown(wait=True)
+
+
+def _require_space(store: RunStore) -> None:
+    require_space(store.path)

@@ -135,7 +135,7 @@ class Reporter:
             )
             for head in heads
         ]
-        return next(iter(runs), None), str(self._store.fault or "")
+        return next(iter(runs), None), str(self._store.refusal or "")
 
     def _calibrations(self) -> tuple[CalibrationReport, ...]:
         return tuple(

@@ -22,11 +22,13 @@ function one(alarm, first, firstSince) {
   const level = priority(alarm);
   const after = firstSince && alarm.since ? (new Date(alarm.since) - new Date(firstSince)) / 1000 : 0;
   const latched = (cell.snapshot.faults || []).some((fault) => fault.number === alarm.number);
+  const when = after < 0 ? t("before_first", (-after).toFixed(1)) : t("after_first", after.toFixed(1));
+  const held = t(cell.snapshot.state === "STOPPED" ? "latched_stopped" : "latched");
   const reason = whyNot("acknowledge");
   return h("div", { class: `alarm fresh${first ? " first" : ""}`, "data-number": alarm.number },
     h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${spoken(alarm.text)}`),
-    h("p", { class: "dim" }, first ? t("first_out") : t("after_first", after.toFixed(1)), ` · ${time(alarm.since)}`,
-      alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${t("latched")}` : ""),
+    h("p", { class: "dim" }, first ? t("first_out") : when, ` · ${time(alarm.since)}`,
+      alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${held}` : ""),
     h("p", {}, `${t("cause")}: ${given(`cause_${alarm.number}`, alarm.cause)}`), h("p", {}, `${t("what_to_do")}: ${remedy(alarm.number, alarm.remedy)}`),
     h("div", { class: "row" }, h("button", { type: "button", disabled: Boolean(reason), onclick: () => give("acknowledge", { request: "acknowledge", number: alarm.number }) }, t("acknowledge")),
       h("span", { class: "dim" }, reason || t("acknowledge_does"))));
@@ -45,7 +47,7 @@ export function update(root) {
   if (!s || !place) return;
   const first = s.faults[0]?.number;
   const alarms = [...s.alarms].sort((a, b) => (b.number === first) - (a.number === first));
-  const key = JSON.stringify([alarms, s.faults.map((fault) => fault.number), document.documentElement.lang, whyNot("acknowledge")]);
+  const key = JSON.stringify([alarms, s.state, s.faults.map((fault) => fault.number), document.documentElement.lang, whyNot("acknowledge")]);
   if (key === drawn) return;
   drawn = key;
   place.replaceChildren(h("h2", {}, t("alarms_active", alarms.length)),

@@ -47,7 +47,11 @@ class JobFactory:
         """
         # What is asked for comes first: an unknown recipe is the caller's mistake, and stays one
         # when the devices are ready.
-        return await self._validate_request(command, mode) or _refused(*self._validate_cell())
+        code = await self._validate_request(command, mode)
+        if code is RejectCode.NONE:
+            await self._services.store.look_for_room()
+            code = _refused(*self._validate_cell())
+        return code
 
     def ready(self, mode: Mode) -> bool:
         """Whether some Start in this mode would be taken; cheap, reads no files."""
@@ -121,8 +125,8 @@ class JobFactory:
 
     def _validate_cell(self) -> tuple[RejectCode, CellError | None]:
         """Why no Start at all is taken now."""
-        if self._services.store.fault is not None:
-            return RejectCode.RECORDS_NOT_READY, self._services.store.fault
+        if self._services.store.refusal is not None:
+            return RejectCode.RECORDS_NOT_READY, self._services.store.refusal
         cell = self._services.cell
         try:
             require_ready(cell.robots.values())

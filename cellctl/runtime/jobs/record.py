@@ -14,7 +14,6 @@ from cellctl.errors.records import RecordsError, RecordSilent
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import MAINTENANCE, Document, RunResult
-from cellctl.records.files.disk_space import require_space
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
@@ -161,9 +160,12 @@ class JobRecord:
     async def _start(self, **made_with: Any) -> None:
         """Write the row with what it was made with, and who commanded it.
 
-        Raises ``DiskNearlyFull``: better now than with the part in contact.
+        Raises ``DiskNearlyFull``, should the room have gone since Start was taken: better now than
+        with the part in contact.
         """
-        await self.store.do(_require_space)
+        await self.store.look_for_room()
+        if self.store.scarcity is not None:
+            raise self.store.scarcity
         self.number = await self.store.do(
             RunStore.start_run,
             serial=self._command.serial,
@@ -177,7 +179,3 @@ class JobRecord:
         self._motion = MotionRecorder(
             cell.robots, cell.guards, cell.robot_notes, cell.run_notes, file
         ).start()
-
-
-def _require_space(store: RunStore) -> None:
-    require_space(store.path)

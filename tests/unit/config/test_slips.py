@@ -52,8 +52,8 @@ def judged(
     return undecided, otherwise
 
 
-# The standard test has the file that is read quickest. The deck's moves are stated anew for each edit
-# that passes, and most that pass are divided.
+# The standard test has the file that is read quickest. The deck's moves are stated anew for each
+# edit that passes, and most that pass are divided.
 _QUICK = "insertion-pin.toml"
 _LONG = {("deck.toml", "/10")}
 

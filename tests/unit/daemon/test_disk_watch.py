@@ -1,5 +1,6 @@
 """A disk that fills up or hangs while an arm moves ends the run, between its steps too."""
 
+import shutil
 import threading
 from collections.abc import Iterator
 
@@ -7,7 +8,7 @@ import pytest
 
 from cellctl.daemon import disk_watch
 from cellctl.daemon.disk_watch import DiskWatch
-from cellctl.errors.records import RecordNotWritten, RecordSilent
+from cellctl.errors.records import DiskNearlyFull, RecordNotWritten, RecordSilent
 from cellctl.packml.state import State
 from cellctl.records.files import disk_space
 from cellctl.records.store import RunStore
@@ -72,6 +73,47 @@ async def test_without_a_run_nothing_is_written(rig: DaemonRig, watch: DiskWatch
     await rig.idle()
     await watch.look()
     assert not (rig.store_folder / disk_space.PROBE).exists()
+
+
+async def test_whoever_would_start_hears_before_that_there_is_no_room(
+    rig: DaemonRig, watch: DiskWatch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    await rig.idle()
+    full = shutil.disk_usage("/")._replace(free=10**6)
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: full)
+    await watch.look()
+    await watch.look()
+    assert rig.unit.machine.state is State.IDLE
+    assert (rig.shown().alarms, rig.shown().ready) == ((DiskNearlyFull.number,), False)
+    told = await rig.archive.do(RunStore.active_alarms)
+    assert [alarm.number for alarm in told] == [DiskNearlyFull.number], "said once"
+    monkeypatch.undo()
+    await watch.look()
+    assert rig.shown().ready
+
+
+async def test_a_disk_that_hangs_between_runs_is_asked_once(
+    rig: DaemonRig,
+    watch: DiskWatch,
+    hanging: threading.Event,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    await rig.idle()
+    asked = []
+    there = shutil.disk_usage("/")
+
+    def hangs(folder: object) -> object:
+        asked.append(folder)
+        hanging.wait()
+        return there
+
+    monkeypatch.setattr(shutil, "disk_usage", hangs)
+    for _ in range(3):
+        await watch.look(timeout_s=0.01)
+    hanging.set()
+    await watch.look()
+    assert len(asked) == 1
+    assert rig.unit.machine.state is State.IDLE
 
 
 async def test_the_probe_is_no_part_of_the_record(rig: DaemonRig, watch: DiskWatch) -> None:

@@ -14,6 +14,7 @@ from cellctl.errors.link import DeviceAway
 from cellctl.errors.records import DiskNearlyFull, RecordSilent
 from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore
@@ -123,14 +124,30 @@ async def test_a_device_that_hangs_when_it_is_asked(rig: DaemonRig) -> None:
     assert not rig.shown().ready
 
 
-async def test_a_disk_without_room_refuses_the_run_before_anything_moves(
+async def test_a_disk_without_room_refuses_the_start(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     full = shutil.disk_usage("/")._replace(free=10**6)
+    await rig.idle()
     monkeypatch.setattr(shutil, "disk_usage", lambda _folder: full)
+    assert await rig.take(Command.START) is RejectCode.RECORDS_NOT_READY
+    assert rig.unit.machine.state is State.IDLE
+    assert not rig.shown().ready
+    monkeypatch.undo()
+    assert await rig.take(Command.START) is RejectCode.NONE, "taken as soon as there is room"
+
+
+async def test_a_disk_that_fills_up_after_start_ends_the_run_before_anything_moves(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    there = shutil.disk_usage("/")
+    free = iter([there.total])
+    monkeypatch.setattr(
+        shutil, "disk_usage", lambda _folder: there._replace(free=next(free, 10**6))
+    )
     await rig.idle()
     moves = list(rig.bench.cell.main.moves)
-    await rig.take(Command.START)
+    assert await rig.take(Command.START) is RejectCode.NONE
     await rig.until(lambda: rig.shown().first_out_alarm == DiskNearlyFull.number)
     await rig.to(State.STOPPED)
     assert rig.bench.cell.main.moves == moves, "nothing has moved"
