@@ -15,5 +15,6 @@ def demo(context: typer.Context) -> None:
     """
     # By name and as another program, because the core must not import the fakes.
     environment = os.environ | {"FAKES_DEMO_NAME": "cellctl demo"}
-    program = [sys.executable, "-m", "fakes", "demo", *context.args]
+    # Not from the folder in which one stands (-P): beside a clone lies a folder called cellctl.
+    program = [sys.executable, "-P", "-m", "fakes", "demo", *context.args]
     os.execve(sys.executable, program, environment)

@@ -24,5 +24,5 @@ def study(context: typer.Context) -> None:
         # Each worker has one processor.
         "OPENBLAS_NUM_THREADS": "1",
     }
-    program = [sys.executable, "-m", "benchmarks.study", *context.args]
+    program = [sys.executable, "-P", "-m", "benchmarks.study", *context.args]
     os.execve(sys.executable, program, environment)

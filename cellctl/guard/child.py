@@ -48,7 +48,8 @@ class GuardChild:
         self.reader = RingReader(memory)
         with theirs:
             # A fresh interpreter, not a fork: a fork would inherit the daemon's memory and locks.
-            command = [sys.executable, "-X", "faulthandler", "-m", module]
+            # Its modules are the daemon's own, whatever lies in the folder that it runs in (-P).
+            command = [sys.executable, "-P", "-X", "faulthandler", "-m", module]
             self._process = subprocess.Popen(
                 [*command, str(theirs.fileno()), str(memory)],
                 stdin=subprocess.DEVNULL,

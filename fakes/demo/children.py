@@ -38,7 +38,7 @@ class Child:
         """Start in a process group of its own, so that Ctrl-C reaches only the parent."""
         with log.open("w", encoding="utf-8") as stderr:
             process = subprocess.Popen(
-                [sys.executable, *command],
+                [sys.executable, "-P", *command],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=stderr,

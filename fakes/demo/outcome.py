@@ -89,7 +89,8 @@ def _write(path: Path, values: dict[str, Any]) -> None:
 
 
 def _cellctl(folder: Path, *arguments: str) -> None:
-    command = [sys.executable, "-m", "cellctl", *arguments, "--data-dir", str(folder / "store")]
+    to_store = "--data-dir", str(folder / "store")
+    command = [sys.executable, "-P", "-m", "cellctl", *arguments, *to_store]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     if done.returncode:
         raise ChildFailed(f"cellctl {' '.join(arguments)}:\n{done.stderr.strip()}")

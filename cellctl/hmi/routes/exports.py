@@ -61,7 +61,7 @@ class RunExporter:
 
     async def _run(self, *arguments: str, limit_s: float) -> None:
         process = await asyncio.create_subprocess_exec(
-            sys.executable, "-m", "cellctl", "runs", "export", *arguments,
+            sys.executable, "-P", "-m", "cellctl", "runs", "export", *arguments,
             "--data-dir", str(self._data_dir),
             stdout=asyncio.subprocess.DEVNULL, stderr=asyncio.subprocess.PIPE,
         )  # fmt: skip
