@@ -6,7 +6,7 @@ from pathlib import Path
 
 
 def test_the_demonstration_is_found_beside_a_folder_called_cellctl(tmp_path: Path) -> None:
-    (tmp_path / "cellctl").mkdir()  # as above a clone
+    (tmp_path / "cellctl" / "config").mkdir(parents=True)  # as above a clone
     command = [Path(sys.executable).parent / "cellctl", "demo", "--help"]
     ended = subprocess.run(
         command, cwd=tmp_path, capture_output=True, text=True, timeout=60, check=False
