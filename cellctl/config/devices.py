@@ -9,7 +9,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, StringConstraints, field_validator, model_validator
 
 from cellctl import plugins
-from cellctl.config.base import JointsDeg, Section, WrittenPose
+from cellctl.config.base import JointsDeg, LessSafe, Section, WrittenPose
 
 ComMm = Annotated[float, Field(ge=-3000, le=3000)]
 Pixels = Annotated[float, Field(gt=0, le=5000)]
@@ -184,15 +184,15 @@ class ForceSensorConfig(DeviceConfig):
     """Pose of the sensor's frame on the flange of that robot."""
     stop_channel: DeviceConfig
     """The guard's own line to that robot."""
-    stale_ms: Annotated[float, Field(ge=2, le=500)] = 10.0
+    stale_ms: Annotated[float, Field(ge=2, le=500), LessSafe.WITH_MORE] = 10.0
     """Time without a sample that is a trip while the guard is armed."""
-    flange_age_ms: Annotated[float, Field(ge=20, le=1000)] = 100.0
+    flange_age_ms: Annotated[float, Field(ge=20, le=1000), LessSafe.WITH_MORE] = 100.0
     """Age of the flange pose that is a trip while the guard is armed."""
-    free_force_n: Annotated[float, Field(gt=0, le=20_000)] = 2000.0
+    free_force_n: Annotated[float, Field(gt=0, le=20_000), LessSafe.WITH_MORE] = 2000.0
     """Greatest force at the sensor in moves that should touch nothing: what the load makes of their
     acceleration and, before it was identified, of their tilt. The default fits 200 kg at 40 % of
     rated joint speed: 1.5 kN on the fake cell."""
-    free_moment_n_m: Annotated[float, Field(gt=0, le=20_000)] = 900.0
+    free_moment_n_m: Annotated[float, Field(gt=0, le=20_000), LessSafe.WITH_MORE] = 900.0
     """The same for moments: 0.6 kN·m on the fake cell."""
     cpu: Annotated[int, Field(ge=0, le=255)] | None = None
     """Pin the guard to this processor; off by default."""

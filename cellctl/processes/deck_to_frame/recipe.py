@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from cellctl.config.base import Section, WrittenPose
+from cellctl.config.base import LessSafe, Section, WrittenPose
 from cellctl.config.recipe import Recipe
 
 Length = Annotated[float, Field(gt=0, le=5000)]
@@ -104,17 +104,17 @@ class Pins(Section):
 class Mating(Section):
     """Force-limited mating (paper 2.4.2, mission A4)."""
 
-    target_force_n: Annotated[float, Field(ge=5, le=200)] = 35.0
+    target_force_n: Annotated[float, Field(ge=5, le=200), LessSafe.WITH_MORE] = 35.0
     """F_t of the paper: also the predicted peak of the touch and the least force of a seat."""
-    limit_force_n: Annotated[float, Field(ge=10, le=500)] = 50.0
+    limit_force_n: Annotated[float, Field(ge=10, le=500), LessSafe.WITH_MORE] = 50.0
     """Force along the approach that must never be exceeded."""
-    touch_force_n: Annotated[float, Field(ge=2, le=50)] = 8.0
+    touch_force_n: Annotated[float, Field(ge=2, le=50), LessSafe.WITH_MORE] = 8.0
     """A force that counts as a touch: the drift of the touch detector is half of it."""
     release_force_n: Annotated[float, Field(ge=6, le=100)] = 15.0
     """Left on the joint for fastening after the hold."""
-    max_lateral_force_n: Annotated[float, Field(gt=0, le=500)] = 25.0
+    max_lateral_force_n: Annotated[float, Field(gt=0, le=500), LessSafe.WITH_MORE] = 25.0
     """Across the approach, at any moment; the seated deck may keep four fifths of it."""
-    max_moment_n_m: Annotated[float, Field(gt=0, le=500)] = 25.0
+    max_moment_n_m: Annotated[float, Field(gt=0, le=500), LessSafe.WITH_MORE] = 25.0
     """About each axis, at any moment; it must leave room for a deck that rests on an edge."""
     max_untared_force_n: Annotated[float, Field(gt=0, le=500)] = 80.0
     """What the compensation may leave at the stand-off before the tare, about 4 % of the weight;
@@ -130,7 +130,7 @@ class Mating(Section):
     acceleration_mm_s2: Annotated[float, Field(gt=0, le=200)] = 20.0
     """Acceleration of all straight moves of the mating: its inertia has to stay far below a
     contact."""
-    stop_latency_ms: Annotated[float, Field(ge=1, le=2000)]
+    stop_latency_ms: Annotated[float, Field(ge=1, le=2000), LessSafe.WITH_LESS]
     """Upper bound, used while procedure 107 has no valid result; 107 does not pass beyond it."""
     stiffness_n_per_mm: Annotated[float, Field(ge=10, le=20_000)]
     """Robot and joint in series: upper bound, used while procedure 108 has no valid result for

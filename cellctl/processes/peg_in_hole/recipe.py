@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from cellctl.config.base import Section, WrittenPose
+from cellctl.config.base import LessSafe, Section, WrittenPose
 from cellctl.config.recipe import Recipe
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 
@@ -21,7 +21,7 @@ class KeysSection(Section):
     """From the face to where the keys meet their keyways."""
     window_deg: Annotated[float, Field(gt=0, le=45)]
     """Half width of the angles that enter."""
-    uncertainty_deg: Annotated[float, Field(gt=0, le=60)]
+    uncertainty_deg: Annotated[float, Field(gt=0, le=60), LessSafe.WITH_LESS]
     """The plug is turned by no more than this when it arrives, in 99 of 100 cases."""
 
 
@@ -63,9 +63,9 @@ class HolePlace(Section):
 
     pose: WrittenPose
     """base_T_hole: the middle of the hole on its face, z out of it."""
-    uncertainty_mm: Annotated[float, Field(gt=0, le=20)]
+    uncertainty_mm: Annotated[float, Field(gt=0, le=20), LessSafe.WITH_LESS]
     """Radius that holds 99 of 100 true places, along the face."""
-    height_uncertainty_mm: Annotated[float, Field(gt=0, le=10)]
+    height_uncertainty_mm: Annotated[float, Field(gt=0, le=10), LessSafe.WITH_LESS]
     face_radius_mm: _Length
     """The face is touched on a circle of this radius: on the face, beside the hole."""
     datum_depth_mm: Annotated[float, Field(ge=0, le=100)] = 0.0
@@ -78,13 +78,13 @@ class HolePlace(Section):
 class Forces(Section):
     """What may be felt at the tip."""
 
-    search_n: _Force
+    search_n: Annotated[_Force, LessSafe.WITH_MORE]
     """Pressed with while searching, and touched with."""
-    insertion_n: _Force
+    insertion_n: Annotated[_Force, LessSafe.WITH_MORE]
     """Largest force of the insertion."""
-    fault_n: _Force
+    fault_n: Annotated[_Force, LessSafe.WITH_MORE]
     """The guard stops at it."""
-    fault_nm: Annotated[float, Field(gt=0, le=100)]
+    fault_nm: Annotated[float, Field(gt=0, le=100), LessSafe.WITH_MORE]
     """The same for moments, N·m: newton metres, as the columns of a curve are called, too."""
     withdrawal_n: _Force = 20.0
     """Largest force for drawing the part out again."""
@@ -95,7 +95,7 @@ class Seat(Section):
 
     least_n: _Force
     most_n: _Force
-    grip_n: Annotated[float, Field(gt=0, le=5000)] | None = None
+    grip_n: Annotated[float, Field(gt=0, le=5000), LessSafe.WITH_MORE] | None = None
     """Force along the axis at which the part slips in the gripper, measured at commissioning. Where
     it is left out, nothing is called inserted."""
     pull_n: Annotated[float, Field(gt=0, le=100)] | None = None

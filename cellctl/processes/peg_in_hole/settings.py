@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from cellctl.config.base import Section
+from cellctl.config.base import LessSafe, Section
 
 STIFFNESS_N_MM, DEAD_TIME_MS = (1.0, 10_000.0), (1.0, 200.0)
 """What a cell can have."""
@@ -13,9 +13,13 @@ STIFFNESS_N_MM, DEAD_TIME_MS = (1.0, 10_000.0), (1.0, 200.0)
 class PegSettings(Section):
     """What was measured of arm, sensor and loop in contact."""
 
-    stiffness_n_mm: Annotated[float, Field(ge=STIFFNESS_N_MM[0], le=STIFFNESS_N_MM[1])]
+    stiffness_n_mm: Annotated[
+        float, Field(ge=STIFFNESS_N_MM[0], le=STIFFNESS_N_MM[1]), LessSafe.WITH_LESS
+    ]
     """Upper bound for arm and contact in series at the tip, along the axis of the hole."""
-    dead_time_ms: Annotated[float, Field(ge=DEAD_TIME_MS[0], le=DEAD_TIME_MS[1])]
+    dead_time_ms: Annotated[
+        float, Field(ge=DEAD_TIME_MS[0], le=DEAD_TIME_MS[1]), LessSafe.WITH_LESS
+    ]
     """Upper bound from a force at the tip to a motion of the tip in answer. Both bounds count until
     procedure 301 has measured better figures."""
     repeatability_mm: Annotated[float, Field(gt=0, le=1)]
@@ -30,10 +34,10 @@ class PegSettings(Section):
     """How far it may be turned; the touches see 0.1° at a repeatability of 0.02 mm on 15 mm."""
     validity_days: Annotated[int, Field(ge=1, le=3650)] = 365
     """Of what procedures 301 and 302 measure."""
-    lost_tick_ms: Annotated[float, Field(ge=10, le=1000)] | None = None
+    lost_tick_ms: Annotated[float, Field(ge=10, le=1000), LessSafe.WITH_MORE] | None = None
     """A tick of the stream that comes later than this ends the contact at standstill; left out: 50
     ms, or ten periods of the stream where they are less."""
-    old_force_ms: Annotated[float, Field(ge=1, le=1000)] = 5.0
+    old_force_ms: Annotated[float, Field(ge=1, le=1000), LessSafe.WITH_MORE] = 5.0
     """A force older than this lets the arm go no further."""
-    lost_force_ms: Annotated[float, Field(ge=5, le=1000)] = 20.0
+    lost_force_ms: Annotated[float, Field(ge=5, le=1000), LessSafe.WITH_MORE] = 20.0
     """A force older than this ends the contact."""

@@ -3,7 +3,7 @@
 Which figures a bound follows from is found by changing each of them a little, so that no check has
 to list them. Nothing decides which of them is wrong. So each is named with the value that it would
 have to be with all others as they are, but for values that its key cannot have, and for those that
-would break another bound. What presses harder or waits longer comes last.
+would break another bound. What is less safe by the key's own words (``LessSafe``) comes last.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -11,10 +11,12 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
+from cellctl.config.base import LessSafe
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound, at_least, at_most
 from cellctl.config.checks.bounds.changed import figures, is_number, with_figure
 from cellctl.config.checks.bounds.edge import farthest_allowed
+from cellctl.config.checks.bounds.less_safe import less_safe
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.config.recipe import Recipe
 
@@ -30,39 +32,6 @@ _MOST_TIMES = 1e4
 _EXACT = 1e-11
 """Share to which a way out is found: finer than the digits by which ``at_least`` and ``at_most``
 tell a limit that is round from one that has to be rounded."""
-_MORE_IS_LESS_SAFE = frozenset(
-    (
-        "search_n",
-        "insertion_n",
-        "fault_n",
-        "fault_nm",
-        "grip_n",
-        "touch_force_n",
-        "target_force_n",
-        "limit_force_n",
-        "max_lateral_force_n",
-        "max_moment_n_m",
-        "free_force_n",
-        "free_moment_n_m",
-        "stale_ms",
-        "flange_age_ms",
-        "old_force_ms",
-        "lost_force_ms",
-        "lost_tick_ms",
-    )
-)
-"""With more of it the arm presses harder, or goes on for longer, before anything stops it."""
-_LESS_IS_LESS_SAFE = frozenset(
-    (
-        "dead_time_ms",
-        "stiffness_n_mm",
-        "stop_latency_ms",
-        "uncertainty_mm",
-        "uncertainty_deg",
-        "height_uncertainty_mm",
-    )
-)
-"""Upper bounds of what the cell is: with less the arm is driven faster than it may be."""
 _LESS_SAFE = " (the less safe way)"
 
 
@@ -125,6 +94,10 @@ class _Subject:
         except (ValueError, ArithmeticError):
             return None
 
+    def less_safe(self, name: str) -> LessSafe | None:
+        """Which other values of a key are less safe."""
+        return less_safe(self.cell, self.recipe, self.key, name)
+
 
 class _Search:
     """What takes part in one broken bound."""
@@ -171,7 +144,7 @@ class _Search:
         is_figure = is_number(self._figures.get(bound.key))
         if is_figure and not self._is_possible(bound.key, limit):
             return _Part(bound.key, value)
-        return _part(bound.key, value, bound.limit, raised=bound.is_low)
+        return self._part(bound.key, value, bound.limit, raised=bound.is_low)
 
     def _other(self, name: str) -> _Part:
         value = self._figures[name]
@@ -181,7 +154,7 @@ class _Search:
             return _Part(name, shown)
         raised = limit > value
         words = at_least(limit) if raised else at_most(limit)
-        return _part(name, shown, words, raised=raised)
+        return self._part(name, shown, words, raised=raised)
 
     def _missing(self, name: str, value: Any) -> float | None:
         """By how much the bound is missed with another value; None for one that cannot be."""
@@ -227,8 +200,7 @@ class _Search:
         bounds = self._subject.changed(name, value * (1.0 + (1e-3 if raised else -1e-3)))
         return bounds is not None and {one.key for one in bounds if one.is_broken} <= self._broken
 
-
-def _part(name: str, value: str, limit: str, *, raised: bool) -> _Part:
-    last = name.rsplit(".", 1)[-1]
-    risky = last in (_MORE_IS_LESS_SAFE if raised else _LESS_IS_LESS_SAFE)
-    return _Part(name, value, limit, _LESS_SAFE if risky else "")
+    def _part(self, name: str, value: str, limit: str, *, raised: bool) -> _Part:
+        less_safe = self._subject.less_safe(name)
+        risky = less_safe is (LessSafe.WITH_MORE if raised else LessSafe.WITH_LESS)
+        return _Part(name, value, limit, _LESS_SAFE if risky else "")
