@@ -33,6 +33,7 @@ from cellctl.calibration.solvers.single_camera.single_camera_result import (
 from cellctl.calibration.solvers.single_camera.two_cameras import MOST_PAIRED, share_of_pairs
 from cellctl.calibration.solvers.view_rejection import (
     MAX_REJECTED_RATIO,
+    RobustAdjustment,
     adjust_good_views,
     repeated,
     why_left_out,
@@ -61,6 +62,25 @@ class SingleCameraLimits:
     together: what stays of an error within the depth of the views is smaller by the ratio of that
     depth to the distance."""
     rejected_ratio: float = MAX_REJECTED_RATIO
+
+    def checks(
+        self,
+        rms_px: float,
+        focal_ratio: float,
+        rejected_ratio: float,
+        paired: float,
+        held_out_px: float | None,
+    ) -> list[LimitCheck]:
+        """The figures of a result against these limits; ``held_out_px`` is None without halves."""
+        checks = [
+            LimitCheck("reprojection rms", rms_px, self.rms_px, "px"),
+            LimitCheck("focal length sigma", focal_ratio, self.focal_sigma_ratio, ""),
+            LimitCheck("rejected views", rejected_ratio, self.rejected_ratio, ""),
+            LimitCheck("views in pairs, as of the two cameras of a head", paired, MOST_PAIRED, ""),
+        ]
+        if held_out_px is not None:
+            checks.append(LimitCheck("held-out rms", held_out_px, self.held_out_px, "px"))
+        return checks
 
 
 def calibrate_single_camera(
@@ -96,14 +116,7 @@ def calibrate_single_camera(
     good, result, state = adjusted.good, adjusted.result, adjusted.result.state
     twice = {i: f"its picture is that of {views[earlier].name}" for i, earlier in again.items()}
     rejected = why_left_out([view.name for view in views], adjusted, twice)
-    residuals = tuple(
-        CameraViewResidual(
-            view.name, float(rms_px), len(view.corners.ids), shift is not None, shift
-        )
-        for view, rms_px, shift in zip(
-            views, adjusted.view_rms_px, adjusted.shift_sigmas, strict=True
-        )
-    )
+    # Judged a second time, because coverage was checked with the views that are now rejected.
     if good.sum() < limits.coverage.views:
         raise TooFewViews(f"{good.sum()} views are left without {'; '.join(rejected)}")
     kept = list(compress(seen, good))
@@ -116,7 +129,7 @@ def calibrate_single_camera(
         camera=SingleCamera(image_size, camera_model(state.camera)),
         method=f"joint bundle adjustment, board shape {shape.value}, lens of {lens.terms} terms",
         board=board,
-        views=residuals,
+        views=_view_residuals(views, adjusted),
         board_m=flat_m + modes.modes @ state.shape,
         found_shape=FoundShape(shape, np.sqrt(np.diag(result.covariance)[len(state.camera) :])),
         coverage=covered,
@@ -126,11 +139,7 @@ def calibrate_single_camera(
         sigma_px=result.sigma_px,
         checks=(
             *coverage_checks,
-            LimitCheck("reprojection rms", rms_px, limits.rms_px, "px"),
-            LimitCheck("focal length sigma", focal_ratio, limits.focal_sigma_ratio, ""),
-            LimitCheck("rejected views", float((~good).mean()), limits.rejected_ratio, ""),
-            LimitCheck("views in pairs, as of the two cameras of a head", paired, MOST_PAIRED, ""),
-            *_held_out_check(held_out_px, limits),
+            *limits.checks(rms_px, focal_ratio, float((~good).mean()), paired, held_out_px),
         ),
         warnings=(*_warnings(len(kept), rejected, held_out_px), *turn_warnings(board)),
         residuals=_field(kept, result),
@@ -170,6 +179,19 @@ def _start(start: CameraStart, modes: int, lens: LensModel) -> CameraBundle:
     )
 
 
+def _view_residuals(
+    views: Sequence[CameraView], adjusted: RobustAdjustment[CameraBundle]
+) -> tuple[CameraViewResidual, ...]:
+    return tuple(
+        CameraViewResidual(
+            view.name, float(rms_px), len(view.corners.ids), shift is not None, shift
+        )
+        for view, rms_px, shift in zip(
+            views, adjusted.view_rms_px, adjusted.shift_sigmas, strict=True
+        )
+    )
+
+
 def _held_out_px(problem: CameraProblem, state: CameraBundle) -> float | None:
     """Residual of each half of the views in a camera that was calibrated with the other half."""
     views, modes = problem.views, problem.modes
@@ -189,14 +211,6 @@ def _held_out_px(problem: CameraProblem, state: CameraBundle) -> float | None:
             squares += rms_px**2 * len(corners.ids)
             count += len(corners.ids)
     return float(np.sqrt(squares / count))
-
-
-def _held_out_check(
-    held_out_px: float | None, limits: SingleCameraLimits
-) -> tuple[LimitCheck, ...]:
-    if held_out_px is None:
-        return ()
-    return (LimitCheck("held-out rms", held_out_px, limits.held_out_px, "px"),)
 
 
 def _warnings(kept: int, rejected: Sequence[str], held_out_px: float | None) -> tuple[str, ...]:

@@ -70,17 +70,7 @@ def calibrate_stereo(
     kept = list(compress(start.views, good))
     board_m = flat_m + modes.modes @ state.shape
     validation = _validate(replace(problem, views=kept), state, board_m)
-    norms = np.concatenate(residual_norms(result.residuals))
-    covariance = _covariance(result, problem.head, pitch_relative_sigma)
-    head = StereoHead(
-        image_size=image_size,
-        left=camera_model(state.left),
-        right=camera_model(state.right),
-        rotation=state.rotation,
-        translation_m=state.translation_m,
-        rms_px=float(np.sqrt((norms**2).mean())),
-        covariance=covariance,
-    )
+    head = _head(problem, result, image_size, pitch_relative_sigma)
     return StereoResult(
         head=head,
         method=f"joint bundle adjustment, board shape {shape.value}, lens of {lens.terms} terms",
@@ -152,6 +142,25 @@ def _validate(problem: StereoProblem, state: BundleState, board_m: Array) -> Cro
         for chosen in (first, ~first)
     )
     return cross_validate((halves[0], halves[1]), parts, board_m)
+
+
+def _head(
+    problem: StereoProblem,
+    result: BundleResult[BundleState],
+    image_size: tuple[int, int],
+    pitch_relative_sigma: float,
+) -> StereoHead:
+    """The head as it was adjusted, with its covariance."""
+    state, norms = result.state, np.concatenate(residual_norms(result.residuals))
+    return StereoHead(
+        image_size=image_size,
+        left=camera_model(state.left),
+        right=camera_model(state.right),
+        rotation=state.rotation,
+        translation_m=state.translation_m,
+        rms_px=float(np.sqrt((norms**2).mean())),
+        covariance=_covariance(result, problem.head, pitch_relative_sigma),
+    )
 
 
 def _covariance(result: BundleResult[BundleState], head: int, pitch_relative_sigma: float) -> Array:
