@@ -38,6 +38,8 @@ def weighed_checks(
 
     ``sensor_r_com_m`` has shape (3,), in the frame of the sensor.
     """
+    # By moments about the flange. What the sensor does not feel acts at the origin of its frame, as
+    # ``not_weighed_kg`` says of itself.
     expected_kg = stated.mass_kg - stated.not_weighed_kg
     moment_kg_mm = stated.mass_kg * np.asarray(stated.com_mm)
     moment_kg_mm -= stated.not_weighed_kg * flange_T_sensor.translation / MM

@@ -39,6 +39,8 @@ async def interrupted_faults(
     What cannot be found out is said in its place, because a cell that does not come up for it would
     tell even less. Raises the faults of the run store.
     """
+    # First, because it has the guards subtract the weight and use the frame of the part: the forces
+    # below are told as they are then.
     for process in processes:
         try:
             await process.show_contact_force()

@@ -92,8 +92,12 @@ class PageDesk:
             before, answer = known
             if _meant(before) != _meant(request):
                 raise NotThePage(f"key {key} was used for another command")
+            # Shielded: a browser that asks again and goes away must not cancel the answer for which
+            # the first request still waits.
             return await asyncio.shield(answer)
         answer = asyncio.get_running_loop().create_future()
+        # Before the command is carried out: the same command that comes meanwhile waits for this
+        # answer, and is not given a second time.
         self._answers[key] = request, answer
         while len(self._answers) > KEYS_KEPT:
             self._answers.popitem(last=False)

@@ -111,8 +111,12 @@ class Responder:
                 raise AddressRefused
             wanted = [first]
         else:
+            # By section 6.21 a stream that asks for an object that is not there begins anew, at the
+            # first one; only a single object (code 4) is refused.
             start = first if first in self._objects else 0
             wanted = [n for n in self._objects if start <= n <= _STREAM_LIMITS[code]]
+        # Conformity 0x81: basic identification, as a stream and object by object. Nothing follows,
+        # because name, product and version always fit into one answer.
         head = struct.pack(">BBBBBB", _MEI_READ_ID, code, 0x81, 0, 0, len(wanted))
         return head + b"".join(
             struct.pack(">BB", n, len(self._objects[n])) + self._objects[n] for n in wanted

@@ -158,6 +158,7 @@ class _Commissioning:
             if touched.ended is not Ended.FORCE:
                 raise LoopFitRefused(f"no {force_n:.0f} N within {travel_m * 1e3:.2f} mm")
             readings.append(await self._reading())
+        # Downwards too: on the way up alone hysteresis would pass for a part of the slope.
         for _ in _FORCES_N[:-1]:
             slope = fit_stiffness(*np.array(readings).T).stiffness_n_m
             back_m = self._loop.tip_command[_Z] - _STEP_N / slope
@@ -186,10 +187,14 @@ class _Commissioning:
         self, figures: LoopFigures, usual: LoopFigures
     ) -> tuple[LoopFigures, StepAnswer]:
         """Twice the damping of the design shows the figures, the design itself shows its steps."""
+        # With twice the damping of the design no overshoot hides the figures (section 4.5, point
+        # 4).
         slow = damping(figures, levers(self._loop.settings.lever_m), 2)
         answer = await self._steps(figures, slow)
         push_n = np.full(len(answer.times_s), answer.step_n)
         fitted = fit_loop(answer.times_s, push_n, answer.rise_n, float(slow[_Z]))
+        # Held against the usual dead time, which a mean over steps shows. The gains are made for
+        # the greatest one.
         check_loop(usual, fitted)
         designed = damping(figures, levers(self._loop.settings.lever_m), 1)
         answer = await self._steps(figures, designed)

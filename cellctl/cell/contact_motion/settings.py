@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from cellctl.force.contact.streamed.gains import (
     LoopFigures,
     check_load,
@@ -12,6 +14,8 @@ from cellctl.force.contact.streamed.gains import (
     levers,
 )
 from cellctl.force.contact.streamed.speeds import touch_speed_m_s
+
+_Z = 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +68,13 @@ class ContactSettings:
     def check(self) -> None:
         """Raise ``LoopTooSlow`` or ``LoopUnstable`` before any contact."""
         weights = levers(self.lever_m)
-        for axes in (1, 3):
+        # A press on a face gives way along z alone. On a chamfer one contact loads z, a side and a
+        # turn, and all axes give way, with three times the damping. Either has to leave its margin.
+        along_z, all_axes = np.arange(6) == _Z, weights > 0
+        for axes, follows in ((1, along_z), (3, all_axes)):
             every = damping(self.figures, weights, axes)
-            follows = weights > 0 if axes > 1 else weights < 0
-            follows[2] = True
             check_load(contact_load(self.figures, self.lever_m, every, follows))
-        alone_n_s_m = float(damping(self.figures, weights, 1)[2])
+        alone_n_s_m = float(damping(self.figures, weights, 1)[_Z])
         check_press(self.figures, self.press_n, alone_n_s_m)
         check_speed(self.touch_speed_m_s, alone_n_s_m, self.limit_n)
 

@@ -22,6 +22,8 @@ class StalledFeed:
     def __init__(
         self, figures: LoopFigures, limit_n: float, depth_m: float, period_s: float
     ) -> None:
+        # Half of the limit is the most by which the study lets a feed grow before the arm has
+        # answered; a limit below 20 N leaves less than the usual 10 N.
         self._full_m_s = touch_speed_m_s(figures, min(FEED_N, 0.5 * limit_n))
         self._limit_n, self._depth_m = limit_n, depth_m
         self._most = _STALLED_S / period_s

@@ -60,6 +60,8 @@ class StreamedMotion:
         while True:
             sample = await self.loop.send(self._next(), self._at_bound())
             samples.append(sample)
+            # The end comes before the limit and before the faults: where a motion has reached what
+            # it was for, bounds that the same tick has met are no matter any more.
             ended = self.end(sample)
             if ended is None and sample.time_s - begun_s > self.limit_s:
                 ended = Ended.TIME
@@ -117,6 +119,8 @@ class StreamedMotion:
         if self.press.watch is None:
             return
         depth_m = float(admittance.displacement[2])
+        # Counted from the last tick with contact, not from the beginning: a press may follow a face
+        # that gives way as far as it is allowed to go at all.
         if not self.press.watch.lost(-float(sample.force_n[2])):
             self._kept_m = depth_m
         elif depth_m - self._kept_m > _FREE_M:

@@ -81,8 +81,9 @@ async def _search(
         if verdict.shortfall:
             raise ExposureNotReached(f"{device.name}: {verdict.shortfall}")
         if verdict.next_s is None:
+            exposures = tried + 1  # with the first look, which only asks what the camera has set
             return FoundExposure(
-                exposure_s, light.grey, light.saturated_share, light.holes, tried + 1
+                exposure_s, light.grey, light.saturated_share, light.holes, exposures
             )
         next_s = verdict.next_s
     raise ExposureNotReached(f"{device.name}: not in {wanted.tries} exposures")

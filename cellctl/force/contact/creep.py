@@ -113,6 +113,7 @@ def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float
     after = replace(state, force_n=force_n, travel_m=travel_m, steps=state.steps + 1)
     moved_m = abs(travel_m - state.anchor_travel_m)
     unsure_m = 3.0 * law.step_sigma_m
+    # From twice the error of the way on, that error makes the estimate at most twice as stiff.
     if moved_m <= 2.0 * unsure_m:
         return after
     # The difference of two readings scatters by √2 of one. Adding three sigmas of it keeps the
@@ -124,6 +125,8 @@ def after_step(law: CreepLaw, state: CreepState, force_n: float, travel_m: float
     # open the way for a long step onto a stiff seat.
     stiffness = min(max(shown, 0.5 * state.stiffness_n_m), law.stiffness_n_m)
     after = replace(after, stiffness_n_m=float(stiffness))
+    # After six times the error, what it adds is a fifth: waiting on would bring little, and mix in
+    # how soft the contact was when it began to close.
     if moved_m <= 6.0 * unsure_m:
         return after
     return replace(after, anchor_force_n=force_n, anchor_travel_m=travel_m)

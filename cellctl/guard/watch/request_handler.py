@@ -77,6 +77,7 @@ class RequestHandler:
         return None
 
     def _arm(self, request: Message) -> None:
+        # The monitor does no I/O, so it is told what it judges by: the channel as it is now.
         self._monitor.channel_up = self._supervisor.up
         self._monitor.arm(limits_from_json(request["limits"]), self._health(), self._now_s)
 

@@ -2,7 +2,7 @@
 
 Travel that was lost is never made up for, because catching up is a jump; a force is never
 extrapolated, because in contact it may have turned round. Source: section 4.2 of the study of
-insertion by touch, with the factors below.
+insertion by touch.
 """
 
 from dataclasses import dataclass
@@ -10,6 +10,9 @@ from enum import StrEnum
 
 from cellctl.errors.streamed_contact import StreamLate
 
+_LATE, _VERY_LATE, _LOST = 1.5, 3.0, 10.0
+"""Ages of a tick, in periods, up to which it is in time, up to which the last target is held, and
+after which the stream is lost (section 4.2)."""
 _LOST_S = 0.05
 """A stream without a tick for this time is lost, however slow its period is."""
 
@@ -38,7 +41,7 @@ class TickRules:
 
     def pace(self, tick_age_s: float, force_age_s: float) -> Pace:
         """How to go on after a tick; raises ``StreamLate``."""
-        lost_s = min(10.0 * self.period_s, _LOST_S) if self.lost_s is None else self.lost_s
+        lost_s = min(_LOST * self.period_s, _LOST_S) if self.lost_s is None else self.lost_s
         if tick_age_s > lost_s:
             raise StreamLate(
                 f"{tick_age_s * 1e3:.0f} ms between two ticks of a stream of "
@@ -49,6 +52,6 @@ class TickRules:
         # A tick that is late gets the target of the one before, and so makes up for nothing. One
         # that is later still brings the arm to rest, as a force does by which nobody can steer any
         # more.
-        if tick_age_s > 3.0 * self.period_s or force_age_s > self.old_force_s:
+        if tick_age_s > _VERY_LATE * self.period_s or force_age_s > self.old_force_s:
             return Pace.BRAKE
-        return Pace.HOLD if tick_age_s > 1.5 * self.period_s else Pace.STEP
+        return Pace.HOLD if tick_age_s > _LATE * self.period_s else Pace.STEP

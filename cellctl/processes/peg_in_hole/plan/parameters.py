@@ -64,6 +64,8 @@ def search_parameters(task: SearchTask) -> SearchParameters:
     press_n = min(_TOUCH_N, task.limits.search_n)
     stiffness, dead_s = cell.stiffness_n_m, cell.dead_time_s
     loop = {"k": stiffness, "θ": dead_s, "t_det": DETECTION_S}
+    # The dip has to stand out of the noise of a height. In the study a tilt of 3° found 82 % of the
+    # holes, one of 5 to 12° at least 99.7 % (section 3.3).
     tilt_rad = min(max(max(0.4e-3, 28 * cell.height_sigma_m) / radius_m, radians(4)), radians(12))
     heights = {"r": radius_m, "σ_z": cell.height_sigma_m}
     dip_m = radius_m * tilt_rad
