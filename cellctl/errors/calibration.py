@@ -29,7 +29,10 @@ class BoardNotFound(CalibrationError):
     number = 601
     text = "Calibration board was not found"
     cause = "Board not in view, partly covered, out of focus, or too dark."
-    remedy = "Look at the images named in the detail; the whole chessboard must be visible."
+    remedy = (
+        "Look at the images named in the detail; the whole chessboard must be visible. In a "
+        "procedure: lay the board where its guide says, and see that the taught pose shows it."
+    )
 
 
 class WrongBoard(CalibrationError):

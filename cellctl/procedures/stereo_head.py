@@ -56,15 +56,16 @@ async def calibrate_head(
             view = await workers.run(
                 detect_view, BoardImages(f"view {number}", pair.left, pair.right), board
             )
-        # A view without the board is no fault: at the borders of the field it may be cut off. What
-        # all views together must cover, the solver checks.
+        # A later view without the board is no fault: at the borders of the field it may be cut off.
+        # What all views together must cover, the solver checks. The first is taken from the taught
+        # pose, which shows it whole: without it nothing is gained by the minutes of the others.
         if view is not None:
             views.append(view)
+        elif number == 1:
+            raise BoardNotFound(f"{station.name} sees no {board} from its taught pose")
     # Back before the solution is tried: it may raise, and the head must not be left tilted over the
     # board.
     await _move(station, poses[0])
-    if not views:
-        raise BoardNotFound(f"{station.name} sees no {board} in any of {len(poses)} views")
     result = await workers.run_within(SOLVE_S, calibrate_stereo, views, board, image_size)
     return ProcedureOutcome(
         kind=kind,

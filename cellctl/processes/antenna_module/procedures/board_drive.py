@@ -79,7 +79,7 @@ async def drive_round_board(
     await mover.to(here)
     await mover.to_taught(HOME)
     if not drive.stops:
-        raise BoardNotFound(f"no {board} in any of {len(poses)} views")
+        raise BoardNotFound(f"{camera_of(cell, setup).name} sees no {board} from the taught pose")
     require_one_wrist(joints)
     return drive
 
@@ -101,11 +101,14 @@ async def _stops(
         height, width = seen.images[0].shape
         image_size = (width, height)
         view = seen.frames[0]
-        # A view without the board is no fault: at the borders of the picture it may be cut off.
-        # What all views together must cover, the solver checks.
+        # A later view without the board is no fault: at the borders of the picture it may be cut
+        # off. What all views together must cover, the solver checks. The first is taken from the
+        # taught pose, which shows it whole: without it nothing is gained by the others' minutes.
         if view is not None:
             stops.append(BoardStop(seen.base_T_flange, view))
             joints[name] = seen.joints_rad
+        elif number == 1:
+            break
     return BoardDrive(tuple(stops), image_size), joints
 
 
