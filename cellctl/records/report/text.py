@@ -5,7 +5,15 @@ from collections.abc import Iterator, Mapping, Sequence
 from datetime import datetime
 from typing import Any
 
-from cellctl.records.units import SIX, SIX_MM_DEG, WRITTEN_POSE, WRITTEN_POSES, label, words
+from cellctl.records.units import (
+    SIX,
+    SIX_MM_DEG,
+    WRITTEN_POSE,
+    WRITTEN_POSES,
+    label,
+    unit_on_pages,
+    words,
+)
 
 _DECIMALS = {"mm": 4, "°": 5}
 """Decimals of errors and their deviations, by unit: 0.1 µm, and what that is at an arm's length."""
@@ -24,7 +32,7 @@ def facts(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
         if isinstance(value, Mapping):
             yield from facts(value, f"{prefix}{name}: ")
         elif not isinstance(value, list | tuple):
-            yield prefix + name, with_unit(plain(value), unit)
+            yield prefix + name, _measured(value, unit)
         elif all(isinstance(one, Mapping) and not _deep(one) for one in value) and value:
             for index, one in enumerate(value, start=1):
                 yield from facts(one, f"{prefix}{name} {index}: ")
@@ -33,7 +41,7 @@ def facts(document: Mapping[str, Any], prefix: str = "") -> Iterator[tuple[str, 
         elif key.endswith(SIX_MM_DEG) and len(value) == len(SIX):
             yield prefix + words(key.removesuffix(SIX_MM_DEG)), _six(key, value)
         else:
-            yield prefix + name, with_unit(plain(value), unit)
+            yield prefix + name, _measured(value, unit)
 
 
 def _deep(document: Mapping[str, Any]) -> bool:
@@ -61,8 +69,24 @@ def with_unit(text: str, unit: str) -> str:
 
 
 def quantity(value: float | None, unit: str) -> str:
-    """A number with its unit; a dash where it is unknown."""
-    return MISSING if value is None else with_unit(number(value), unit)
+    """A number with the unit of pages; a dash where it is unknown."""
+    shown, factor = unit_on_pages(unit)
+    return MISSING if value is None else with_unit(number(value * factor), shown)
+
+
+def _measured(value: Any, unit: str) -> str:
+    """A value of a document, or several, with the unit of pages."""
+    shown, factor = unit_on_pages(unit)
+    return with_unit(plain(_times(value, factor)), shown)
+
+
+def _times(value: Any, factor: float) -> Any:
+    if isinstance(value, list | tuple):
+        return [_times(one, factor) for one in value]
+    # In Python a bool is an int, but a yes or no is no figure.
+    if factor == 1.0 or isinstance(value, bool) or not isinstance(value, int | float):
+        return value
+    return value * factor
 
 
 def plain(value: Any) -> str:

@@ -24,6 +24,7 @@ from cellctl.records.report.sections import (
     ReportSection,
     Tile,
 )
+from cellctl.records.report.text import quantity
 
 _TILES = (
     (keys.SEARCH_TIME, "Search", "s", 0),
@@ -85,7 +86,7 @@ def _search(record: RunRecord) -> Iterator[ReportBlock]:
 def _computed(parameter: dict[str, object]) -> str:
     value = parameter["value"]
     assert isinstance(value, float)
-    return f"{value:.4g} {parameter['unit']} = {parameter['formula']}"
+    return f"{quantity(value, str(parameter['unit']))} = {parameter['formula']}"
 
 
 def _insertion_limit_n(record: RunRecord) -> float | None:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 from cellctl.records.entries import DRY_RUN, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
+from cellctl.records.units import unit_on_pages
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +74,26 @@ def guarded(record: RunRecord, key: str, title: str, expanded: float | None) -> 
     lower = None if narrow.lower is None else narrow.lower - expanded
     upper = None if narrow.upper is None else narrow.upper + expanded
     return replace(plain, required=Limit(lower, upper), accepted=narrow)
+
+
+def on_page(entry: Requirement) -> Requirement:
+    """The same in the unit of pages, uncertainty and limits with the value."""
+    unit, factor = unit_on_pages(entry.unit)
+
+    def times(value: float | None) -> float | None:
+        return None if value is None else value * factor
+
+    def scaled(limit: Limit) -> Limit:
+        return Limit(times(limit.lower), times(limit.upper))
+
+    return replace(
+        entry,
+        unit=unit,
+        value=times(entry.value),
+        expanded=times(entry.expanded),
+        required=scaled(entry.required),
+        accepted=scaled(entry.accepted),
+    )
 
 
 def not_measured(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:

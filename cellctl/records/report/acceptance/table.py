@@ -11,6 +11,7 @@ from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
     of_figure,
+    on_page,
 )
 from cellctl.records.report.sections import (
     Note,
@@ -61,7 +62,8 @@ def acceptance(record: RunRecord, brought: Sequence[RequirementGroup]) -> Report
 def _rows(group: RequirementGroup, phases: Mapping[int, str]) -> Iterator[TableRow]:
     if group.requirements:
         yield TableRow((TableCell(group.title, group.note),), RowMark.GROUP)
-    for entry in group.requirements:
+    for found in group.requirements:
+        entry = on_page(found)
         verdict, mark = _verdict(entry)
         unit = entry.unit
         # Two figures of an uncertainty mean something, and the value has as many decimals
