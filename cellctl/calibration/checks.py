@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import isnan
 from typing import Any, Literal
 
 Side = Literal["max", "min"]
@@ -25,6 +26,9 @@ class LimitCheck:
 
     def __str__(self) -> str:
         relation = "≤" if self.side == "max" else "≥"
+        if isnan(self.value):
+            limit = f"{self.limit:.4g} {self.unit}".rstrip()
+            return f"{self.name} not measured ({relation} {limit})"
         mark = "ok" if self.passed else "OUT OF LIMIT"
         value = f"{self.value:.4g} {self.unit}".rstrip()
         return f"{self.name} {value} ({relation} {self.limit:.4g}): {mark}"

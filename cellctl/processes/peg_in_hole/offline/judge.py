@@ -8,7 +8,13 @@ from cellctl.calibration.judged_insertion import JudgedInsertion
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve, read_curve
 from cellctl.processes.peg_in_hole.offline.evidence import evidence_of
-from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart, TaskOfCurve, read_part
+from cellctl.processes.peg_in_hole.offline.own_curve import require_own_curve
+from cellctl.processes.peg_in_hole.offline.task_file import (
+    JudgedPart,
+    TaskOfCurve,
+    read_part,
+    recorded_evidence,
+)
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, judge_peg
 
@@ -20,6 +26,7 @@ def judge_by_task(curve: Path, task: Path) -> JudgedInsertion:
     try:
         read = read_curve(curve, force_on_hole=part.curve.force_on == "hole")
         evidence, judgement = judge_curve(read, part)
+        require_own_curve(evidence, recorded_evidence(task))
     except PegCurveInvalid as fault:
         raise PegCurveInvalid(f"{curve}: {fault.detail}") from fault
     record = _plain({"evidence": evidence.to_record(), "judgement": judgement.to_record()})

@@ -2,6 +2,7 @@
 
 import json
 import tomllib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -114,21 +115,34 @@ def parse_part(text: str, *, as_json: bool = False) -> JudgedPart:
     except (ValueError, RecursionError) as error:
         raise FileInvalid(f"is not {'JSON' if as_json else 'TOML'}: {error}") from error
     if as_json and isinstance(content, dict) and "documents" in content:
-        content = _of_run(content["documents"])
+        found = _newest(content["documents"], keys.TASK)
+        if found is None:
+            text = f"the run has no document {keys.TASK}: no insertion by touch was begun"
+            raise FileInvalid(text)
+        content = found
     try:
         return JudgedPart.model_validate(content)
     except ValidationError as error:
         raise FileInvalid(error_words(error)) from error
 
 
-def _of_run(documents: object) -> object:
-    """The newest task that a run has recorded."""
+def recorded_evidence(path: Path) -> Mapping[str, Any] | None:
+    """What the run of a task has found; None where the task is no run, or one without a verdict.
+
+    Raises ``OSError`` and ``ValueError`` for a file that ``read_part`` refuses.
+    """
+    if path.suffix.lower() != ".json":
+        return None
+    content = json.loads(read_hand_written(path))
+    result = _newest(content.get("documents"), keys.CYCLE)
+    evidence = result.get("evidence") if isinstance(result, dict) else None
+    return evidence if isinstance(evidence, dict) else None
+
+
+def _newest(documents: object, key: str) -> object | None:
+    """The newest content of that key that a run has recorded."""
     listed = documents if isinstance(documents, list) else []
     found = [
-        one.get("content")
-        for one in listed
-        if isinstance(one, dict) and one.get("key") == keys.TASK
+        one.get("content") for one in listed if isinstance(one, dict) and one.get("key") == key
     ]
-    if not found:
-        raise FileInvalid(f"the run has no document {keys.TASK}: no insertion by touch was begun")
-    return found[-1]
+    return found[-1] if found else None

@@ -183,7 +183,7 @@ def _slip_check(evidence: InsertionEvidence) -> LimitCheck:
     # A grip force of 0 is as unknown as none: no number, so that the check fails.
     ratio = _known(evidence.greatest_force_n) / (evidence.grip_force_n or nan)
     by_force = LimitCheck(SLIP, ratio, MOST_OF_GRIP, "")
-    if by_force.passed:
+    if by_force.passed or isnan(ratio):
         return by_force
     return LimitCheck(RETOUCH, abs(_known(evidence.retouch_error_m)) / _MM, _RETOUCH_MM, "mm")
 

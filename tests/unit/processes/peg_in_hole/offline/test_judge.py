@@ -315,6 +315,33 @@ def test_a_task_is_read_from_toml_json_and_the_record_of_a_run(tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
+    ("figure", "factor", "words"),
+    [
+        ("seat_force_n", 1.0, None),
+        ("seat_force_n", 3.0, "seat force is .* N, that of the run in the task .* N"),
+        ("depth_m", 1.02, "depth of the seat is .* mm, that of the run in the task .* mm"),
+    ],
+)
+def test_a_curve_of_another_run_is_not_judged_by_this_task(
+    tmp_path: Path, figure: str, factor: float, words: str | None
+) -> None:
+    rows, kinds = inserted(GOOD)
+    curve, task = tmp_path / "c.csv", tmp_path / "run.json"
+    curve.write_bytes(as_csv(rows, kinds))
+    told = {"key": "insertion.task", "content": part().model_dump(mode="json")}
+    task.write_text(json.dumps({"documents": [told]}))
+    evidence = dict(judge_by_task(curve, task).record["evidence"])
+    evidence[figure] *= factor
+    result = {"key": "insertion.result", "content": {"evidence": evidence}}
+    task.write_text(json.dumps({"documents": [told, result]}))
+    if words is None:
+        assert judge_by_task(curve, task).good
+        return
+    with pytest.raises(PegCurveInvalid, match=words):
+        judge_by_task(curve, task)
+
+
+@pytest.mark.parametrize(
     ("text", "words"),
     [
         (TASK.replace("depth_mm = 12.0", ""), "depth_mm"),
