@@ -109,7 +109,10 @@ class HoleMissing(VisionError):
         "Part not in view, hole covered or damaged, wrong feature file, or light under which the "
         "hole is not darker than the face round it."
     )
-    remedy = "Look at the picture; check part, light and feature file."
+    remedy = (
+        "Look at the picture; check part, light and feature file. Where all holes are seen and none "
+        "fits, check the square size that the head was calibrated with."
+    )
 
 
 class HoleAmbiguous(VisionError):

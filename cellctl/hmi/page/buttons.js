@@ -79,8 +79,8 @@ export function longPress(button, act) {
 
 function startDialog() {
   const recipes = cell.description?.recipes || [];
-  const serial = h("input", { id: "serial", maxlength: 24, pattern: "[A-Z0-9._\\-]+", autocomplete: "off", required: true });
-  const mate = h("input", { id: "mate-serial", maxlength: 24, pattern: "[A-Z0-9._\\-]*", autocomplete: "off" });
+  const serial = h("input", { id: "serial", maxlength: 24, pattern: "[A-Z0-9._\\-]+", title: t("serial_form"), autocomplete: "off", required: true });
+  const mate = h("input", { id: "mate-serial", maxlength: 24, pattern: "[A-Z0-9._\\-]*", title: t("serial_form"), autocomplete: "off" });
   const recipe = h("select", { id: "recipe" }, recipes.map((one) => h("option", { value: one.number }, `${one.number} ${one.name}`)));
   const dry = h("input", { type: "checkbox", id: "dry" });
   const dialog = h("dialog", { "aria-label": t("cmd_start") });
