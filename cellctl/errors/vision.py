@@ -110,8 +110,8 @@ class HoleMissing(VisionError):
         "hole is not darker than the face round it."
     )
     remedy = (
-        "Look at the picture; check part, light and feature file. Where all holes are seen and none "
-        "fits, check the square size that the head was calibrated with."
+        "Look at the picture; check part, light and feature file. Where all holes are seen and "
+        "none fits, check the square size that the head was calibrated with."
     )
 
 
