@@ -243,7 +243,7 @@ class CalibrationInvalidated(CalibrationError):
     """An event has made a calibration worthless before its date."""
 
     number = 635
-    text = "A needed calibration was invalidated"
+    text = "A calibration was invalidated"
     cause = "The event in the detail may have moved what was calibrated."
     remedy = "Look at what happened; then run the calibration in Maintenance mode."
 

@@ -6,15 +6,25 @@ from typing import Self
 from cellctl.errors.base import CellError
 from cellctl.errors.force import GuardDied, SensorSilent
 from cellctl.errors.link import LinkLost
+from cellctl.guard.report import GuardSample
 from cellctl.guard.ring import GuardStatus
 from cellctl.interfaces.ft_sensor import FtHealth
 
 _HUNG_S = 1.0
 """A guard whose status is older than this hangs: it publishes one at every beat, fifty times a
 second. The robot's dead man has stopped the robot long before."""
-_SILENT_S = 1.0
+SILENT_S = 1.0
 """A sensor that is silent for this long is a fault even while the guard is not armed. An armed
 guard trips after milliseconds; this only reports, and leaves the driver time to reconnect."""
+
+
+def is_present(sample: GuardSample, now_s: float) -> bool:
+    """Whether a sample still says what the sensor feels.
+
+    The memory that a guard has left keeps its last sample for ever. Shown as a force, it would tell
+    whoever goes to an arm that is pressing that it is free.
+    """
+    return now_s - sample.receive_time_s <= SILENT_S
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +91,6 @@ class GuardHealth:
             return SensorSilent("the guard has given it up")
         if not self.stop_channel_up:
             return LinkLost("the guard's stop channel to the robot is down")
-        if self.sample_age_s > _SILENT_S:
+        if self.sample_age_s > SILENT_S:
             return SensorSilent(f"no sample for {self.sample_age_s:.1f} s")
         return None

@@ -6,6 +6,7 @@ from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.devices import Cell
 from cellctl.clock import Monotonic, now_s
 from cellctl.errors import CellError
+from cellctl.guard.health import is_present
 from cellctl.interfaces import RobotMode
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
@@ -122,11 +123,12 @@ class StatusView:
 
         The register map says that it is along z of the part, without gravity. As long as no payload
         is known there is no gravity to remove, and the sensor's own axes may look the other way, so
-        that the sign would be wrong: in both cases there is no value.
+        that the sign would be wrong: in both cases there is no value. Nor is there one when nothing
+        has come from the sensor for a while, whether it is silent or its guard has died.
         """
         guard = next(iter(self._cell.guards.values()), None)
         sample = None if guard is None else guard.newest()
-        if guard is None or sample is None:
+        if guard is None or sample is None or not is_present(sample, self._now_s()):
             return NO_VALUE
         if not (guard.gravity_compensated and guard.in_part_frame):
             return NO_VALUE

@@ -19,6 +19,7 @@ from cellctl.errors import CellError
 from cellctl.fault_catalogue import known_fault
 from cellctl.force.gravity.gravity_compensation import GRAVITY_M_S2
 from cellctl.guard.client import GuardClient
+from cellctl.guard.health import is_present
 from cellctl.packml.state import State
 from cellctl.runtime.alarms import ActiveAlarm
 from cellctl.runtime.cell_status import CellStatus
@@ -147,9 +148,9 @@ class LiveView:
         sample = guard.newest()
         # A wrench with the part's weight still in it is no contact force: better none than that.
         weighed = sample is not None and guard.gravity_compensated
-        wrench: list[float] = (
-            sample.wrench.tolist() if sample is not None and weighed else [math.nan] * 6
-        )
+        stale = sample is not None and not is_present(sample, time_s)
+        known = sample is not None and weighed and not stale
+        wrench: list[float] = sample.wrench.tolist() if sample and known else [math.nan] * 6
         # A zero that a Reset has taken in contact hides what it was pressed with.
         felt = [*wrench[:2], wrench[2] + (guard.hidden_axial_n or 0.0)]
         # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
@@ -159,6 +160,7 @@ class LiveView:
         return {
             "sensor": name,
             "age_s": None if sample is None else max(0.0, time_s - sample.receive_time_s),
+            "stale": stale,
             "compensated": weighed,
             "limit_n": number(status.force_limit_n),
             "presses_n": _pressing_n(status.state, felt, self._least_n(name)),

@@ -39,6 +39,8 @@ class ForceReport(StrictModel):
     sensor: str
     age_s: float | None
     """Of the newest sample; None before the first."""
+    stale: bool = False
+    """The newest sample is too old to say what is felt now, and no wrench is shown."""
     compensated: bool
     """Otherwise the weight is still in it, and no wrench is shown."""
     limit_n: float | None

@@ -184,6 +184,7 @@ def _force(force: Mapping[str, Any]) -> ForceReport:
     return ForceReport(
         sensor=force["sensor"],
         age_s=force["age_s"],
+        stale=force["stale"],
         compensated=force["compensated"],
         limit_n=force["limit_n"],
         presses_n=force["presses_n"],

@@ -27,6 +27,11 @@ _HISTORY = (
         "status bit 9 is not set by the touch that a step looks for; force_z has no value in the "
         "sensor's own axes, where its sign could be wrong. No address has moved",
     ),
+    (
+        8,
+        "force_z has no value when the newest sample of the sensor is more than 1 s old, as after "
+        "the death of its guard. No address has moved",
+    ),
 )
 _RESULTS = {
     Result.NONE: "not ended",

@@ -7,7 +7,7 @@ can write. Who changes an address or a meaning raises ``MAP_VERSION`` and adds t
 from dataclasses import dataclass
 from enum import StrEnum
 
-MAP_VERSION = 7
+MAP_VERSION = 8
 
 
 class Kind(StrEnum):
@@ -149,7 +149,8 @@ INPUT: tuple[Item, ...] = (
         "force_z",
         "mN",
         "present force on the moved part along its z, without gravity, with inertia; no value "
-        "while the payload is not known or no axes of a part are set",
+        "while the payload is not known, no axes of a part are set, or the newest sample is more "
+        "than 1 s old",
     ),
     _i32(77, "force_limit", "mN", "its limit in the present recipe"),
     Item(79, "run_result", "of run_number: 0 open, else as the results"),

@@ -48,7 +48,10 @@ class CalibrationKind(Generic[T]):
     """Whether a record says of itself that it passed."""
     required: bool = True
     """Whether production refuses to start without it. One that is not required only replaces a
-    bound of the recipe by a better figure."""
+    bound of the recipe by a better figure. Production does without one that was never made; one
+    that was invalidated says that something has moved, which a bound need not have foreseen."""
+    serves_production: bool = True
+    """Whether production reads it at all, so that it does not start while it is invalidated."""
     per_recipe: bool = False
     """Whether every recipe has one of its own; see ``for_recipe``."""
 

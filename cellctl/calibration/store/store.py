@@ -17,7 +17,13 @@ from cellctl.calibration.store.envelope import (
     write_stored,
 )
 from cellctl.calibration.store.kind import CalibrationKind, Kinds, T, unparsed
-from cellctl.calibration.store.marker import SUFFIX, lift_invalidation, mark_invalid
+from cellctl.calibration.store.marker import (
+    SUFFIX,
+    lift_invalidation,
+    mark_invalid,
+    marker,
+    require_not_invalidated,
+)
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.calibration.store.validity import ValidityClock
 from cellctl.clock import utc_now
@@ -149,14 +155,17 @@ class CalibrationStore:
     ) -> CellError | None:
         """Why a run of the length ``planned`` may not start, or None.
 
-        Asks for required kinds only. ``newest`` is the newest time of all records: a clock that is
-        behind it was set back.
+        Asks for required kinds, and whether others were invalidated. ``newest`` is the newest time
+        of all records: a clock that is behind it was set back.
         """
-        now = self._now()
+        now, kinds = self._now(), list(kinds)
         try:
             if newest is not None:
                 require_clock_after(newest, now, "newest record")
             self.read_all([kind for kind in kinds if kind.required], now + planned)
+            for kind in kinds:
+                if kind.serves_production:
+                    require_not_invalidated(self.path, kind.name)
         except CellError as error:
             return error
         return None
@@ -182,8 +191,13 @@ class CalibrationStore:
         return min((self._validity.hours(kind) for kind in required), default=math.inf)
 
     def all_valid(self, kinds: Kinds, planned: timedelta = timedelta(0)) -> bool:
-        """True when every required kind stays valid for longer than ``planned``; as ``least_h``."""
-        return self.least_h(kinds) > planned.total_seconds() / 3600
+        """True when every required kind stays valid for longer than ``planned``, and none of the
+        others is invalidated; as ``least_h``."""
+        kinds = list(kinds)
+        invalidated = any(
+            kind.serves_production and marker(self.path, kind.name).exists() for kind in kinds
+        )
+        return not invalidated and self.least_h(kinds) > planned.total_seconds() / 3600
 
     def names(self) -> list[str]:
         """Names of all calibrations in the folder, sorted; also of those that are invalid."""

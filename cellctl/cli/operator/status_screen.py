@@ -165,6 +165,8 @@ def _axis(axis: AxisReport) -> Text:
 def _force(force: ForceReport) -> Text:
     if force.age_s is None:
         return Text("no sample", style="red")
+    if force.stale:
+        return Text(f"not known: the newest sample is {force.age_s:.0f} s old", style="red")
     if not force.compensated:
         return Text("the payload's weight is not removed yet", style="yellow")
     felt = ", ".join(

@@ -75,13 +75,14 @@ function next(s) {
 }
 
 function force(force, index) {
+  const why = force.stale ? t("force_stale", shown(force.age_s, 0)) : force.compensated ? null : t("not_compensated");
   const fz = force.wrench.find((one) => one.axis === "Fz")?.value;
   return [h("h2", {}, t("force", force.sensor)),
     force.trip ? h("p", { class: "bad" }, `■ ${t("tripped")}: ${force.trip}`) : null,
     force.touch ? h("p", { class: "dim" }, `${t("touched")}: ${force.touch}`) : null,
     h("div", { class: "value live" }, `${shown(fz, 1)} N`, h("span", { class: "dim" }, ` / ${shown(force.limit_n, 0)} N`)),
     bar(fz, force.limit_n, true), plot(index, force.limit_n),
-    h("p", { class: "dim live force-axes" }, force.compensated ? force.wrench.map((one) => h("span", {}, `${one.axis} ${shown(one.value, one.unit === "N" ? 1 : 2)} ${one.unit}`)) : t("not_compensated"))];
+    h("p", { class: "dim live force-axes" }, why ?? force.wrench.map((one) => h("span", {}, `${one.axis} ${shown(one.value, one.unit === "N" ? 1 : 2)} ${one.unit}`)))];
 }
 
 function errors(s) {

@@ -88,6 +88,7 @@ TOOL_TURN = CalibrationKind(
     invalidated_by=frozenset({GripperMarksMoved}),
     procedures=(207,),
     required=False,
+    serves_production=False,
 )
 """The gripper's marks beside the flange axis. Nothing is plugged by it: the frame of the tool drops
 out of every scheme. It says whether gripper and drawing are those of each other."""
@@ -98,6 +99,7 @@ TOOL = CalibrationKind(
     invalidated_by=frozenset({ControllerFault, GripperMarksMoved}),
     procedures=(208,),
     required=False,
+    serves_production=False,
 )
 """The gripper's tip by touches, as good as a touch: for picking, and for jogging about the tip."""
 

@@ -6,6 +6,7 @@ from datetime import timedelta
 from typing import Any
 
 from cellctl import log
+from cellctl.calibration.store.kind import Kinds
 from cellctl.cell.readiness import require_ready
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
@@ -100,11 +101,10 @@ class JobFactory:
             # A clock that was set back would make calibrations valid again that have ended. The
             # newest entry of the run store shows it: no entry can be from the future.
             newest = await self._services.store.do(RunStore.newest_time)
-            kinds = self._processes[recipe.process].calibration_kinds()
             # In a thread, because it reads and checks files.
             fault = await asyncio.to_thread(
                 self._services.calibrations.fault,
-                [kind.for_recipe(recipe.id) for kind in kinds],
+                self._kinds(recipe),
                 PLANNED,
                 newest,
             )
@@ -119,9 +119,14 @@ class JobFactory:
     def _some_recipe_is_calibrated(self) -> bool:
         store = self._services.calibrations
         return any(
-            store.all_valid(process.calibration_kinds(), PLANNED)
-            for process in self._processes.values()
+            store.all_valid(self._kinds(recipe), PLANNED)
+            for recipe in self._services.cell.config.recipes
         )
+
+    def _kinds(self, recipe: Recipe) -> Kinds:
+        """The calibrations that count for a recipe."""
+        kinds = self._processes[recipe.process].calibration_kinds()
+        return [kind.for_recipe(recipe.id) for kind in kinds]
 
     def _validate_cell(self) -> tuple[RejectCode, CellError | None]:
         """Why no Start at all is taken now."""

@@ -1,10 +1,10 @@
-"""The register map as the line's programmer read it: docs/register-map.md, version 6."""
+"""The register map as the line's programmer read it: docs/register-map.md, version 8."""
 
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-MAP_VERSION = 7
+MAP_VERSION = 8
 INPUT_COUNT = 125
 HEARTBEAT_ADDRESS = 40
 NO_VALUE = -(2**31)

@@ -42,7 +42,7 @@ def test_a_cycle_with_its_refusals(visited: OwnCell, plc: OutsidePlc) -> None:
 
 def _first_contact(plc: OutsidePlc) -> None:
     block = plc.block()
-    assert block[INPUT["map_version"]] == 7
+    assert block[INPUT["map_version"]] == 8
     assert block[INPUT["test_u32"] : INPUT["test_u32"] + 2] == [0x1234, 0x5678]
     text = INPUT["test_text"]
     assert bytes(b for word in block[text : text + 3] for b in divmod(word, 256)) == b"ABCDEF"

@@ -36,6 +36,8 @@ class TinyGuard:
     faults: dict[str, CellError] = field(default_factory=dict)
     degraded: tuple[str, ...] = ()
     """Real-time measures that were refused."""
+    silent_s: float = 0.0
+    """How long ago the newest sample came."""
     raw: np.ndarray = field(
         default_factory=lambda: np.random.default_rng(1).normal(0.0, 0.2, (200, 6))
     )
@@ -86,7 +88,7 @@ class TinyGuard:
     def newest(self) -> GuardSample | None:
         if not len(self.raw):
             return None
-        time_s = now_s()
+        time_s = now_s() - self.silent_s
         return GuardSample(time_s, time_s, 1, self.raw[-1], self.raw[-1], 0.01)
 
     def latest(self) -> GuardSample:

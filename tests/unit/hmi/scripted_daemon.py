@@ -51,6 +51,7 @@ def snapshot(**changes: Any) -> dict[str, Any]:
             {
                 "sensor": "wrist",
                 "age_s": 0.001,
+                "stale": False,
                 "compensated": True,
                 "limit_n": 50.0,
                 "trip": "",

@@ -9,6 +9,7 @@ from cellctl.errors.force import ForceLimitExceeded
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.processes.deck_to_frame.calibrations import CONTACT_STIFFNESS
 from cellctl.records.store import RunStore
 from tests.unit.daemon_rig import DaemonRig
 
@@ -25,6 +26,23 @@ async def test_a_blow_costs_the_calibrations_that_it_may_have_spoilt(rig: Daemon
     await rig.restart()
     await rig.idle()
     assert await rig.take(Command.START) is RejectCode.CALIBRATION_INVALID
+
+
+async def test_a_figure_that_only_replaces_a_bound_stops_production_when_it_is_declared_wrong(
+    rig: DaemonRig,
+) -> None:
+    await rig.idle()
+    calibrations = rig.bench.calibrations
+    calibrations.store(CONTACT_STIFFNESS.for_recipe(1), {"verdict": "pass"}, "", timedelta(days=1))
+    assert rig.shown().ready
+    calibrations.invalidate([CONTACT_STIFFNESS], "fingers exchanged")
+    assert not rig.shown().ready
+    assert await rig.take(Command.START) is RejectCode.CALIBRATION_INVALID
+    for file in calibrations.path.glob("contact_stiffness_1.*"):
+        file.unlink()
+    assert rig.shown().ready, "never made: the bounds of the recipe count"
+    assert await rig.take(Command.START) is RejectCode.NONE
+    await rig.to(State.COMPLETED)
 
 
 async def test_a_blow_that_cannot_be_written_down_is_a_fault_of_its_own(rig: DaemonRig) -> None:

@@ -70,6 +70,17 @@ async def test_a_force_with_the_payload_s_weight_in_it_is_no_force_on_the_part(
     assert math.isnan(rig.shown().force_z_n)
 
 
+async def test_a_force_of_which_nothing_has_come_for_seconds_is_not_present(
+    rig: DaemonRig,
+) -> None:
+    rig.bench.cell.guard.silent_s = 0.9
+    assert math.isfinite(rig.shown().force_z_n), "a sensor that reconnects"
+    rig.bench.cell.guard.silent_s = 25.0
+    status = rig.shown()
+    assert math.isnan(status.force_z_n)
+    assert values(status, Handshake(), 1)["force_z"] == -(2**31)
+
+
 async def test_a_force_in_the_sensor_s_own_axes_is_no_force_along_the_part_s(
     rig: DaemonRig,
 ) -> None:

@@ -220,6 +220,20 @@ async def test_the_touch_that_a_step_waits_for_is_no_trip(rig: DaemonRig, page: 
     assert "touch after 12 ms" in force["touch"]
 
 
+async def test_a_force_of_which_nothing_has_come_for_seconds_is_not_shown(
+    rig: DaemonRig, page: Page
+) -> None:
+    (force,) = page.snapshot()["forces"]
+    assert not force["stale"]
+    assert force["wrench"][2]["value"] is not None
+    rig.bench.cell.guard.silent_s = 25.0
+    (force,) = page.snapshot()["forces"]
+    assert force["stale"]
+    assert force["age_s"] == pytest.approx(25.0, abs=5.0)
+    assert [axis["value"] for axis in force["wrench"]] == [None] * 6
+    assert force["presses_n"] is None
+
+
 async def test_permitted_is_what_the_command_path_answers(rig: DaemonRig, page: Page) -> None:
     recipe = rig.bench.cell.config.recipes[0]
     for line_alive in (False, True):

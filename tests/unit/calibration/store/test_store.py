@@ -178,7 +178,26 @@ def test_stiffness_is_invalidated_for_every_recipe(store: CalibrationStore) -> N
         store.store(kind, {"verdict": "pass"}, "", HOUR)
     found = store.invalidate([CONTACT_STIFFNESS, STOP_LATENCY], "F527")
     assert [one.kind for one in found] == ["contact_stiffness_1", "contact_stiffness_2"]
-    assert fault(store, timedelta(0)) is None, "production does without it"
+    assert store.fault([CONTACT_STIFFNESS.for_recipe(3)], HOUR) is None, "never made: bounds count"
+
+
+def test_a_better_figure_that_somebody_declared_wrong_is_not_replaced_by_a_bound(
+    store: CalibrationStore,
+) -> None:
+    stiffness = CONTACT_STIFFNESS.for_recipe(1)
+    made = {"verdict": "pass"}
+    store.store(stiffness, made, "", HOUR)
+    assert store.all_valid([stiffness])
+    store.invalidate([CONTACT_STIFFNESS], "fingers exchanged")
+    refused = store.fault([stiffness], HOUR)
+    assert isinstance(refused, CalibrationInvalidated)
+    assert "fingers exchanged" in refused.detail
+    assert not store.all_valid([stiffness]), "the line is told that no Start is taken"
+    told = replace(stiffness, serves_production=False)
+    assert store.fault([told], HOUR) is None
+    assert store.all_valid([told])
+    store.store(stiffness, made, "", HOUR)
+    assert store.fault([stiffness], HOUR) is None
 
 
 def test_a_clock_that_was_set_back_is_not_believed(store: CalibrationStore) -> None:

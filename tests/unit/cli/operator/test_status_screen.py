@@ -16,3 +16,5 @@ def test_a_force_that_is_not_shown_says_why() -> None:
     assert str(_force(hidden)).startswith("in the axes of the sensor; shown")
     shown = hidden.model_copy(update={"wrench": (AxisReport(axis="Fz", unit="N", value=-12.34),)})
     assert str(_force(shown)) == "Fz -12.3 N; limit 50 N"
+    old = hidden.model_copy(update={"age_s": 24.9, "stale": True})
+    assert str(_force(old)) == "not known: the newest sample is 25 s old"
