@@ -4,7 +4,7 @@ import asyncio
 import json
 import signal
 import sys
-from collections.abc import Coroutine
+from collections.abc import Coroutine, Sequence
 from contextlib import AsyncExitStack
 from dataclasses import dataclass
 from functools import partial
@@ -30,10 +30,11 @@ from cellctl.daemon.supervision import supervise
 from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
+from cellctl.packml.command import Command
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 from cellctl.runtime.cell_status import CellStatus
-from cellctl.runtime.unit import UnitController
+from cellctl.runtime.unit import AT_REST, UnitController
 
 _log = log.get(__name__)
 
@@ -67,10 +68,15 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
     """
     config = overrides.of(load_cell(cell_file))
     give_back_large_blocks()
-    stop = asyncio.Event()
+    stop, told = asyncio.Event(), list[str]()
+
+    def tell(number: signal.Signals) -> None:
+        told.append(number.name)
+        stop.set()
+
     loop = asyncio.get_running_loop()
     for number in SIGNALS:
-        loop.add_signal_handler(number, stop.set)
+        loop.add_signal_handler(number, tell, number)
     signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
     async with AsyncExitStack() as stack:
         data_dir = overrides.data_dir or Path(config.data_dir)
@@ -79,7 +85,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # everything before it still writes down how it ended.
         stack.callback(store.close)
         cell = Cell(config, cell_file.parent)
-        loop.add_signal_handler(signal.SIGHUP, stop.set)
+        loop.add_signal_handler(signal.SIGHUP, tell, signal.SIGHUP)
         stack.callback(cell.workers.close)
         unit = UnitController(cell, store)
         stack.push_async_callback(unit.background.drain)
@@ -100,7 +106,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.push_async_callback(cell.disconnect)
         # The last thing on the stack is the first to happen: the arm is stopped while every link
         # still stands and the fault is known.
-        stack.push_async_exit(partial(_end, unit))
+        stack.push_async_exit(partial(_end, unit, store, told))
         watches = supervise(cell, unit, plc, publisher, store, vitals=vitals)
         await until_told(stop, _work(cell, unit, watches, plc))
         _log.info("asked to end")
@@ -161,11 +167,18 @@ def _numbered(error: BaseException) -> CellError:
 
 async def _end(
     unit: UnitController,
+    store: AsyncRunStore,
+    told: Sequence[str],
     _kind: type[BaseException] | None,
     error: BaseException | None,
     _traceback: TracebackType | None,
 ) -> None:
-    await unit.close(error if isinstance(error, CellError) else None)
+    fault = error if isinstance(error, CellError) else None
+    if fault is None and unit.machine.state not in AT_REST:
+        # The run that is aborted now has no fault: its record says whose command it was.
+        by = f"the end of the daemon ({told[0] if told else 'no signal'})"
+        unit.background.start(store.do(RunStore.audit, by, Command.ABORT.name.lower()))
+    await unit.close(fault)
 
 
 async def _work(

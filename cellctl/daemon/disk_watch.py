@@ -45,7 +45,7 @@ class DiskWatch:
     async def _look_for_room(self, timeout_s: float) -> None:
         # A disk that hangs is told by the command that waits for it. Here it is asked once, and not
         # again before it has answered: questions would pile up before the writes of that command.
-        self._asking = self._asking or asyncio.create_task(self._store.look_for_room())
+        self._asking = self._asking or asyncio.create_task(self._ask())
         done, _ = await asyncio.wait({self._asking}, timeout=timeout_s)
         if not done:
             return
@@ -55,6 +55,10 @@ class DiskWatch:
         self._scarce = fault is not None
         if fault is not None and not known:
             await self._unit.machine.fail(fault)
+
+    async def _ask(self) -> None:
+        await self._store.look_for_room()
+        await self._store.keep_ends()
 
     async def _fail(self, run: int, fault: CellError) -> None:
         # A disk that is full stays full, and one alarm a run is enough to read.

@@ -61,7 +61,8 @@ class RecordNotWritten(RecordsError):
     number = 803
     text = "A record could not be written"
     cause = "Disk full, failing or read-only; or a command of a user who may not write the store."
-    remedy = "Repair the disk, restart the daemon; nothing is retried. Use the cell's user account."
+    remedy = "Make room on the disk or repair it, then restart the daemon: until then nothing is "
+    remedy += "retried and no Start is taken. Use the cell's user account."
 
 
 class StoreLocked(RecordsError):
@@ -165,12 +166,12 @@ class NotReplayable(RecordsError):
 
 
 class RunInterrupted(RecordsError):
-    """The daemon ended in the middle of a run; found at the next start."""
+    """A run that no daemon has closed; found at the next start."""
 
     number = 821
-    text = "A run was interrupted by the end of the daemon"
-    cause = "Told when the daemon starts: in this run it was killed, or the PC lost its power."
-    remedy = "Look at arm and part as the detail says; then Clear and Reset: it lifts the arm off."
+    text = "A run was not closed before the daemon ended"
+    cause = "Told when the daemon starts: it was killed, the PC went down, or the disk took no end."
+    remedy = "Look at arm and part as the detail says; then Reset (Clear if Aborted) lifts it off."
     reaction = Reaction.WARN
 
 
@@ -293,8 +294,6 @@ class FleetNotNamed(FleetError):
 
     number = 837
     text = "No usable address of a fleet database"
-    cause = (
-        "`[fleet]` of the cell file or `--store` is missing or wrong, or the password's file is."
-    )
+    cause = "`[fleet]` in the cell file or `--store` is missing or wrong, or the password's file."
     remedy = "Give `postgresql://USER@HOST:PORT/DATABASE` as `url` under `[fleet]` or as "
     remedy += "`--store`, and the password in a file or in `CELLCTL_FLEET_PASSWORD`."

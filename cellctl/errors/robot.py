@@ -117,8 +117,9 @@ class StreamSilent(RobotError):
 
     number = 312
     text = "Robot's stream of positions went silent"
-    cause = "The job program on the controller hangs, or the link is half open."
-    remedy = "Check the job program; then Clear and Reset."
+    cause = "The job program on the controller hangs, the link is half open, or this PC was too "
+    cause += "busy to read what was sent."
+    remedy = "Check the job program, and what else loads this PC; then Clear and Reset."
 
 
 class SetpointRefused(RobotError):

@@ -17,6 +17,7 @@ from cellctl.records.files.raw_images import (
     coding_thread,
     encode_and_put,
 )
+from cellctl.records.files.unwritten_end import UnwrittenEnd
 from cellctl.records.store import RunStore
 
 _log = log.get(__name__)
@@ -49,6 +50,8 @@ class AsyncRunStore:
         """The first write that did not reach the disk; the store takes no run after it."""
         self.scarcity: RecordsError | None = None
         """Why the disk had no room for another run when it was last looked at."""
+        self._unkept: dict[int, UnwrittenEnd] = {}
+        """Ends of runs that reached neither the database nor a file beside it, by run."""
 
     @property
     def refusal(self) -> RecordsError | None:
@@ -63,6 +66,25 @@ class AsyncRunStore:
             self.scarcity = error
         else:
             self.scarcity = None
+
+    async def keep_end(self, run: int, end: UnwrittenEnd) -> None:
+        """Keep how a run ended that could not be closed, as soon as the disk takes it."""
+        self._unkept[run] = end
+        await self.keep_ends()
+
+    async def keep_ends(self) -> None:
+        """Try again what ``keep_end`` could not keep; costs nothing when there is none."""
+        if self._unkept:
+            await asyncio.get_running_loop().run_in_executor(self._thread, self._keep_ends)
+
+    def _keep_ends(self) -> None:
+        for run, end in tuple(self._unkept.items()):
+            try:
+                self._store.keep_end(run, end)
+            except RecordNotWritten as error:
+                _log.error("end of a run not kept yet", run=run, end=end.fault, fault=str(error))
+            else:
+                del self._unkept[run]
 
     async def do(
         self, call: Callable[Concatenate[RunStore, P], R], *args: P.args, **kwargs: P.kwargs
@@ -141,6 +163,7 @@ class AsyncRunStore:
     def close(self) -> None:
         """Finish pending writes and close the store."""
         self._images.shutdown(wait=True)
+        self._thread.submit(self._keep_ends).result()
         self._thread.submit(self._store.close).result()
         self._thread.shutdown(wait=True)
 

@@ -23,6 +23,7 @@ from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.files.mcap_reading import MEDIA_TYPE as MCAP_MEDIA_TYPE
 from cellctl.records.files.mcap_reading import has_messages
 from cellctl.records.files.unfinished import MOTION, UnfinishedRecordings
+from cellctl.records.files.unwritten_end import UnwrittenEnd, UnwrittenEnds
 from cellctl.records.ownership import Ownership
 from cellctl.records.seals import LedgerHead
 
@@ -45,6 +46,7 @@ class RunStore(StoredRecords):
         )
         self.artefacts = ArtefactFolder(path / "files")
         self._unfinished = UnfinishedRecordings(path / "unfinished")
+        self._ends = UnwrittenEnds(path / "unfinished")
         self._written: dict[int, WrittenDetails | None] = {}
         """What this store has written of each run that it has opened, by its number."""
 
@@ -56,9 +58,11 @@ class RunStore(StoredRecords):
     def mark_interrupted(self) -> list[int]:
         """Become the owner and close what an earlier owner left open; the numbers of those runs.
 
-        Raises ``StoreInUse`` while another daemon lives.
+        A run whose end an earlier owner has kept is closed with it, and is not one of them. Raises
+        ``StoreInUse`` while another daemon lives.
         """
         self._ownership.take()
+        interrupted = []
         with self._database.write() as session:
             found = rows.open_runs(session)
             for row in found:
@@ -66,11 +70,20 @@ class RunStore(StoredRecords):
                     kept = self.artefacts.put(data), len(data)
                     recording = rows.artefact(row.number, MOTION, MCAP_MEDIA_TYPE, *kept)
                     sealed_details.add_details(session, row, [recording], None)
+                if (end := self._ends.read(row.number)) is not None:
+                    known = end.result, end.fault_number, end.fault
+                    rows.close(session, row, *known, ended=end.ended)
+                    continue
                 rows.close(session, row, RunResult.INTERRUPTED, None, None)
-            interrupted = [row.number for row in found]
+                interrupted.append(row.number)
         # Those of runs that were closed too: a daemon may die between storing and removing.
         self._unfinished.clear()
+        self._ends.clear()
         return interrupted
+
+    def keep_end(self, run: int, end: UnwrittenEnd) -> None:
+        """Keep how a run ended that could not be closed; ``mark_interrupted`` closes it so."""
+        self._ends.keep(run, end)
 
     def start_run(
         self,

@@ -135,7 +135,7 @@ class Reporter:
             )
             for head in heads
         ]
-        return next(iter(runs), None), str(self._store.refusal or "")
+        return next(iter(runs), None), _refusal(self._store)
 
     def _calibrations(self) -> tuple[CalibrationReport, ...]:
         return tuple(
@@ -189,4 +189,15 @@ def _force(force: Mapping[str, Any]) -> ForceReport:
         limit_n=force["limit_n"],
         presses_n=force["presses_n"],
         wrench=_axes(force["wrench"]),
+    )
+
+
+def _refusal(store: AsyncRunStore) -> str:
+    """Why no run is taken, and what ends that; empty when one is."""
+    if store.fault is None:
+        return str(store.refusal or "")
+    # What was wrong with the disk then may have been mended since.
+    return (
+        f"a write has failed ({store.fault}): nothing is recorded any more, and no Start is taken, "
+        "until the disk has room and is sound and the daemon is started again"
     )

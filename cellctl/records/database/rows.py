@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import fields
+from datetime import datetime
 from typing import Any, TypeVar
 
 from sqlalchemy import Select, select
@@ -108,16 +109,23 @@ def open_phase(session: Session, run: int) -> PhaseRow | None:
 
 
 def close(
-    session: Session, row: RunRow, result: RunResult, fault_number: int | None, fault: str | None
+    session: Session,
+    row: RunRow,
+    result: RunResult,
+    fault_number: int | None,
+    fault: str | None,
+    *,
+    ended: datetime | None = None,
 ) -> None:
-    """Close a run and seal it."""
-    row.ended, row.result = utc_now(), result.value
+    """Close a run and seal it now; it has ended now, too, unless ``ended`` says when."""
+    now = utc_now()
+    row.ended, row.result = ended or now, result.value
     row.fault_number, row.fault = fault_number, fault
     phase = open_phase(session, row.number)
     # Nobody knows when an interrupted phase ended: its end stays unknown rather than invented.
     if phase is not None and result is not RunResult.INTERRUPTED:
         phase.ended = row.ended
-    ledger.seal(session, RUN, row, row.ended)
+    ledger.seal(session, RUN, row, now)
 
 
 def active_alarm_rows() -> Select[AlarmRow]:

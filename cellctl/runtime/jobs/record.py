@@ -8,12 +8,14 @@ from typing import Any
 from cellctl import log
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.cell.devices import Cell
+from cellctl.clock import utc_now
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
-from cellctl.errors.records import RecordsError, RecordSilent
+from cellctl.errors.records import RecordNotWritten, RecordsError, RecordSilent, StoreLocked
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import MAINTENANCE, Document, RunResult
+from cellctl.records.files.unwritten_end import UnwrittenEnd
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
@@ -77,14 +79,18 @@ class JobRecord:
         # Images are written in the background and belong to the seal, which covers every file of
         # the run at its closing.
         await self.store.images_kept()
-        await self.store.insist(
-            CLOSE_PATIENCE_S,
-            RunStore.close_run,
-            self.number,
-            outcome,
-            fault_number=fault.number if fault else None,
-            fault=str(fault) if fault else None,
-        )
+        try:
+            await self.store.insist(
+                CLOSE_PATIENCE_S,
+                RunStore.close_run,
+                self.number,
+                outcome,
+                fault_number=fault.number if fault else None,
+                fault=str(fault) if fault else None,
+            )
+        except (RecordNotWritten, StoreLocked) as unwritten:
+            await self.store.keep_end(self.number, _unwritten_end(outcome, fault, unwritten))
+            raise
         _log.info(
             "run closed", run=self.number, result=outcome.value, ledger_head=await self._head()
         )
@@ -179,3 +185,19 @@ class JobRecord:
         self._motion = MotionRecorder(
             cell.robots, cell.guards, cell.robot_notes, cell.run_notes, file
         ).start()
+
+
+def _unwritten_end(
+    outcome: RunResult, fault: CellError | None, unwritten: RecordsError
+) -> UnwrittenEnd:
+    """What the next start writes in the record: the fault that ended the run, and why it is late.
+
+    The line was told that the run was aborted, so its part is not good.
+    """
+    late = f"the end of the run could not be recorded ({unwritten}); written at the next start"
+    return UnwrittenEnd(
+        utc_now(),
+        RunResult.ABORTED if outcome is RunResult.GOOD else outcome,
+        (fault or unwritten).number,
+        f"{fault}; {late}" if fault else f"{unwritten}; written at the next start",
+    )

@@ -26,6 +26,7 @@ async def died(rig: DaemonRig, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) 
     await rig.contact.reached.wait()
     with monkeypatch.context() as killed:
         killed.setattr(RunStore, "close_run", lost)
+        killed.setattr(RunStore, "keep_end", lost)
         await rig.close()
     guard = rig.bench.cell.guard
     guard.raw = np.tile([0.0, 12.0, -16.0, 0.0, 0.0, 0.0], (50, 1))

@@ -45,14 +45,15 @@ def fault_box(record: RunRecord, audit: Sequence[AuditEntry]) -> FaultBox | None
 def _cut_off(record: RunRecord) -> FaultBox:
     """A run that no daemon closed while it was made."""
     if record.head.result is None:
-        text = "Not closed: this run is at work, or its daemon was killed"
+        text = "Not closed: this run is at work, its daemon was killed, or its disk takes no record"
     else:
-        text = "Interrupted: the daemon ended in the middle of this run; what follows is unknown"
+        text = "Interrupted: the daemon ended, or its disk took nothing more, before this run was "
+        text += "closed; what follows is unknown"
     return FaultBox(
         text,
         _last_step(record),
-        "The daemon was killed, or the PC went down; the end of this run was written at the next "
-        "start.",
+        "The daemon was killed, the PC went down, or the disk was full or failing; that the run "
+        "was not closed was written at the next start.",
         "Nothing below says that the part is good: values were taken before the interruption. "
         "Look at part and arm, and make the run again.",
     )

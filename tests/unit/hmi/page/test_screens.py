@@ -156,12 +156,12 @@ def test_the_band_names_every_alarm_and_the_gravest_first(
     screen: Screen, paper: PaperDaemon
 ) -> None:
     silent = alarm(701, "Line PLC silent: 3.0 s") | {"reaction": "stop"}
-    told = "A run was interrupted by the end of the daemon: run 7"
+    told = "A run was not closed before the daemon ended: run 7"
     left = alarm(821, told) | {"reaction": "warn"}
     paper.snapshot = snapshot(faults=[silent], alarms=[silent, left])
     band = screen.tab.locator("#band")
     expect(band).to_contain_text("▲2 F701")
-    expect(band).to_contain_text("· ▼3 F821 A run was interrupted by the end of the daemon")
+    expect(band).to_contain_text("· ▼3 F821 A run was not closed before the daemon ended")
     expect(band).not_to_contain_text("run 7")
     touched = alarm(512, "Force limit exceeded: Fz 61 N") | {"reaction": "abort"}
     paper.snapshot = snapshot(faults=[silent, touched], alarms=[silent, touched])

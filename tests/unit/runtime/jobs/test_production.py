@@ -6,10 +6,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cellctl.daemon.disk_watch import DiskWatch
 from cellctl.errors.calibration import CalibrationNotStored
 from cellctl.errors.force import GuardDied
+from cellctl.errors.line import LineLostInContact
 from cellctl.errors.link import LinkLost
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records import RecordNotWritten, RunInterrupted
 from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.command import Command
@@ -324,7 +326,7 @@ async def test_a_disk_that_fails_at_the_end_makes_no_good_part(
     assert await rig.take(Command.START) is RejectCode.RECORDS_NOT_READY
 
 
-async def test_a_run_that_was_left_open_is_interrupted_at_the_next_start(
+async def test_a_run_that_the_disk_did_not_close_says_so_after_the_next_start(
     rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def full(*_: object, **__: object) -> None:
@@ -335,10 +337,38 @@ async def test_a_run_that_was_left_open_is_interrupted_at_the_next_start(
         await rig.started()
         await rig.to(State.ABORTED)
     await rig.restart()
-    assert [run.result for run in await rig.runs()] == ["interrupted"]
+    (run,) = await rig.runs()
+    assert (run.result, run.fault_number) == ("aborted", RecordNotWritten.number)
+    assert run.fault is not None
+    assert run.fault.endswith("disk full; written at the next start")
+    assert RunInterrupted.number not in rig.shown().alarms, "the daemon lived"
     assert rig.unit.machine.state is State.STOPPED
     assert rig.shown().alarms[0] == 803, "survives the restart"
     assert (rig.shown().run_number, rig.shown().run_result) == (1, Result.ABORTED)
+
+
+async def test_the_fault_that_ended_a_run_is_kept_until_the_disk_takes_it(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object, **__: object) -> None:
+        raise RecordNotWritten("disk full")
+
+    with monkeypatch.context() as broken:
+        broken.setattr(RunStore, "close_run", full)
+        broken.setattr(RunStore, "keep_end", full)
+        rig.contact.may_end.clear()
+        await rig.started()
+        await rig.contact.reached.wait()
+        await rig.unit.machine.fail(LineLostInContact("in step mate"))
+        await rig.to(State.ABORTED)
+    await DiskWatch(rig.archive, rig.unit).look()
+    with monkeypatch.context() as broken:
+        broken.setattr(RunStore, "keep_end", full)
+        await rig.restart()
+    (run,) = await rig.runs()
+    assert (run.result, run.fault_number) == ("aborted", LineLostInContact.number)
+    assert run.fault is not None
+    assert "in step mate; the end of the run could not be recorded (F803" in run.fault
 
 
 async def test_the_line_reads_the_result_of_the_last_run_after_a_restart(rig: DaemonRig) -> None:
