@@ -18,7 +18,10 @@ _AT_ONCE = 2
 def secret_of(pin: str) -> str:
     """What the settings keep of a PIN or password: salt and scrypt hash (RFC 7914)."""
     salt = secrets.token_bytes(16)
-    parts = (salt, _hashed(pin, salt))
+    return _kept(salt, _hashed(pin, salt))
+
+
+def _kept(*parts: bytes) -> str:
     return "scrypt$" + "$".join(base64.b64encode(part).decode() for part in parts)
 
 
@@ -45,7 +48,8 @@ class People:
         self._tokens = tokens
         self._working = asyncio.Semaphore(_AT_ONCE)
         # Compared with for a name that nobody has, so that the time of the answer tells no names.
-        self._nobody = secret_of(secrets.token_hex(16))
+        # No PIN has this hash; to compute one would keep the page from its start.
+        self._nobody = _kept(secrets.token_bytes(16), secrets.token_bytes(32))
 
     async def person(self, name: str, pin: str) -> Person | None:
         """Whoever has this name and this PIN."""

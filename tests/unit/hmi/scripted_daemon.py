@@ -138,9 +138,13 @@ class PaperDaemon:
         return self.answer
 
     async def follow(self, writer: asyncio.StreamWriter) -> None:
+        described = b""
         while True:
             if not self.silent:
-                writer.write(as_line({"kind": "description", **self.description}))
+                line = as_line({"kind": "description", **self.description})
+                if line != described:
+                    writer.write(line)
+                    described = line
                 writer.write(as_line({**self.snapshot, "mono_s": now_s()}))
                 await writer.drain()
             await asyncio.sleep(0.05)

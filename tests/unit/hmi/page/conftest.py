@@ -4,26 +4,25 @@ import os
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from playwright.sync_api import sync_playwright
 
-from tests.unit.hmi.page.screen import Screen
+from tests.unit.hmi.page.screen import Screen, Tabs
 from tests.unit.hmi.scripted_daemon import PaperDaemon, page_thread, serving
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 @pytest.fixture(scope="package")
-def browser() -> Iterator[Any]:
+def tabs() -> Iterator[Tabs]:
     if CHROMIUM is None:
         pytest.skip("no Chromium on this machine")
     arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
     with sync_playwright() as started:
-        found = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield found
-        found.close()
+        browser = started.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield Tabs(browser)
+        browser.close()
 
 
 @pytest.fixture
@@ -34,6 +33,6 @@ def address(settings: Path, paper: PaperDaemon) -> Iterator[str]:
 
 
 @pytest.fixture
-def screen(browser: Any, address: str) -> Iterator[Screen]:
-    with Screen(browser, address) as found:
+def screen(tabs: Tabs, address: str) -> Iterator[Screen]:
+    with Screen(tabs, address) as found:
         yield found

@@ -12,14 +12,17 @@ from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.page.screen import Screen
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
 
-AXE = Axe()
+AXE = Axe().axe_script
 # All rules that axe has on by itself, and the one for the size of targets of WCAG 2.2.
 OPTIONS = {"resultTypes": ["violations"], "rules": {"target-size": {"enabled": True}}}
 
 
 def complaints(screen: Screen) -> list[str]:
     """What axe finds wrong with what the tab shows."""
-    found: dict[str, Any] = AXE.run(screen.tab, options=OPTIONS).response
+    # Half a megabyte of script, which stays while the page only goes from screen to screen.
+    if not screen.tab.evaluate("'axe' in window"):
+        screen.tab.evaluate(AXE)
+    found: dict[str, Any] = screen.tab.evaluate("(options) => axe.run(options)", OPTIONS)
     assert found["testEngine"]["name"] == "axe-core"
     assert len(found["passes"]) > 20, "it has looked at something"
     return [
@@ -83,9 +86,11 @@ def test_the_run_and_its_alarms_in_every_kind_of_state(told: Screen, paper: Pape
         told.tab.goto(f"{told.url}#run")
         expect(told.tab.locator("#state")).to_have_attribute("data-state", name)
         found += [f"{name} {one}" for one in complaints(told)]
-        told.tab.goto(f"{told.url}#alarms")
-        expect(told.tab.locator(".alarm")).to_have_count(len(state.get("alarms", ())))
-        found += [f"{name} alarms {one}" for one in complaints(told)]
+        # Every kind of alarm; with none the screen was looked at while the cell was at rest.
+        if name == "ABORTED":
+            told.tab.goto(f"{told.url}#alarms")
+            expect(told.tab.locator(".alarm")).to_have_count(len(faults))
+            found += [f"{name} alarms {one}" for one in complaints(told)]
     assert found == []
 
 

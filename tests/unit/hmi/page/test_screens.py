@@ -1,9 +1,5 @@
 """The page in a real Chromium, before a daemon made of paper."""
 
-import signal
-from pathlib import Path
-from typing import Any
-
 from playwright.sync_api import expect
 
 from cellctl.api.local_socket.messages import PlainCommand, Refused, StartCommand
@@ -12,14 +8,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.translations import fault_words, label
 from tests.unit.hmi.page.screen import MOTION, Screen
-from tests.unit.hmi.scripted_daemon import (
-    NAMES,
-    PaperDaemon,
-    alarm,
-    page_process,
-    serving,
-    snapshot,
-)
+from tests.unit.hmi.scripted_daemon import NAMES, PaperDaemon, alarm, snapshot
 
 STATES = [state.name for state in State if state.name != "UNDEFINED"]
 
@@ -117,22 +106,6 @@ def test_a_silent_daemon_makes_the_page_stale_and_it_comes_back(
     paper.silent = False
     expect(screen.tab.locator("#band")).to_be_empty()
     expect(screen.button("reset")).to_be_enabled()
-
-
-def test_a_frozen_page_process_makes_the_page_stale(
-    browser: Any, settings: Path, paper: PaperDaemon
-) -> None:
-    with (
-        serving(settings.parent / "s", paper),
-        page_process(settings) as (process, url),
-        Screen(browser, url) as screen,
-    ):
-        process.send_signal(signal.SIGSTOP)
-        try:
-            expect(screen.tab.locator("#band")).to_contain_text("NO CONNECTION TO THE CELL")
-        finally:
-            process.send_signal(signal.SIGCONT)
-        expect(screen.tab.locator("#age")).to_contain_text("live", timeout=10_000)
 
 
 def test_an_alarm_moves_no_button_and_is_acknowledged(screen: Screen, paper: PaperDaemon) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import re
+import signal
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -21,7 +22,7 @@ from cellctl.api.local_socket.messages import (
 from cellctl.api.local_socket.page_desk import PageDesk
 from cellctl.api.local_socket.users import Users
 from cellctl.packml.reject import RejectCode
-from tests.unit.hmi.page.screen import Screen
+from tests.unit.hmi.page.screen import Screen, Tabs
 from tests.unit.hmi.scripted_daemon import PaperDaemon, page_process, page_thread, serving, snapshot
 
 STATES = {"hold": "HELD", "unhold": "EXECUTE", "stop": "STOPPED", "abort": "ABORTED"}
@@ -85,8 +86,8 @@ def paper() -> JudgingDaemon:
 
 
 @pytest.fixture
-def pair(browser: Any, address: str) -> Iterator[tuple[Screen, Screen]]:
-    with Screen(browser, address) as anna, Screen(browser, address) as boris:
+def pair(tabs: Tabs, address: str) -> Iterator[tuple[Screen, Screen]]:
+    with Screen(tabs, address) as anna, Screen(tabs, address) as boris:
         anna.sign_in("anna")
         boris.sign_in("boris")
         yield anna, boris
@@ -165,7 +166,7 @@ def test_a_session_that_was_ended_elsewhere_is_told_at_the_first_press(
     pair: tuple[Screen, Screen], paper: JudgingDaemon
 ) -> None:
     anna, _boris = pair
-    other = anna.context.new_page()
+    other = anna.tab.context.new_page()
     other.goto(anna.url)
     expect(other.locator("#who")).to_contain_text("anna")
     other.click("#who")
@@ -175,26 +176,33 @@ def test_a_session_that_was_ended_elsewhere_is_told_at_the_first_press(
     expect(anna.tab.locator("#who")).to_contain_text("Sign in")
     expect(anna.button("unhold")).to_be_disabled()
     assert paper.obeyed == []
-    other.close()
 
 
-def test_a_page_process_that_was_started_again_asks_to_sign_in_at_once(
-    browser: Any, settings: Path, paper: JudgingDaemon
+def test_a_page_process_that_froze_or_was_started_again_is_told_at_once(
+    tabs: Tabs, settings: Path, paper: JudgingDaemon
 ) -> None:
     with (
         serving(settings.parent / "s", paper),
         page_process(settings) as (process, url),
-        Screen(browser, url) as screen,
+        Screen(tabs, url) as screen,
     ):
+        tab = screen.tab
         screen.sign_in()
+        process.send_signal(signal.SIGSTOP)
+        try:
+            expect(tab.locator("#band")).to_contain_text("NO CONNECTION TO THE CELL")
+        finally:
+            process.send_signal(signal.SIGCONT)
+        expect(tab.locator("#age")).to_contain_text("live", timeout=10_000)
+        expect(tab.locator("#who")).to_contain_text("anna")
         process.kill()
         process.wait(10)
-        expect(screen.tab.locator("#band")).to_contain_text("NO CONNECTION")
+        expect(tab.locator("#band")).to_contain_text("NO CONNECTION TO THE CELL")
         port = url.rstrip("/").rsplit(":", 1)[1]
         settings.write_text(settings.read_text().replace("port = 0", f"port = {port}"))
         with page_thread(settings):
-            expect(screen.tab.locator("#age")).to_contain_text("live", timeout=10_000)
-            expect(screen.tab.locator("#who")).to_contain_text("Sign in")
+            expect(tab.locator("#age")).to_contain_text("live", timeout=10_000)
+            expect(tab.locator("#who")).to_contain_text("Sign in")
             expect(screen.button("hold")).to_be_disabled()
             expect(screen.button("abort")).to_be_enabled()
 
