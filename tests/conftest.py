@@ -22,7 +22,6 @@ _WHOLE_FILES = (
     "tests/unit/calibration/",  # rendered boards, solved cameras
     "tests/unit/cli/",  # rendered images, fake cells that stand for all tests of a file
     "tests/unit/fakes/scenes/",
-    "tests/unit/hmi/page/",  # one browser
     "tests/unit/planning/views/",  # a measurement planned
     "tests/unit/processes/antenna_module/",  # rendered connectors, what was taught
     "tests/unit/processes/deck_to_frame/mating/test_mate.py",  # a mating
@@ -32,6 +31,11 @@ _WHOLE_FILES = (
     "tests/unit/vision/",  # rendered images
 )
 """Files whose tests share what takes seconds to make; each worker would make it for itself."""
+_WHOLE_FOLDERS = (
+    "tests/unit/fleet/",  # a database server
+    "tests/unit/hmi/page/",  # one browser
+)
+"""Folders whose files share it among them."""
 
 # Hypothesis fails an example that lasts above 200 ms. On a busy machine that happens to correct
 # code; pytest-timeout is there for code that hangs. The same examples in every run: a commit that
@@ -86,6 +90,9 @@ class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no 
     def _split_scope(self, nodeid: str) -> str:
         if nodeid.startswith("tests/cell/"):
             return "cell"
+        for folder in _WHOLE_FOLDERS:
+            if nodeid.startswith(folder):
+                return folder
         whole = nodeid.startswith(_WHOLE_FILES)
         return nodeid.split("::", maxsplit=1)[0] if whole else nodeid
 

@@ -20,6 +20,8 @@ from tests.rigs.postgres import PASSWORD, PostgresServer
 QUICK = FleetTimeLimits(connect_s=5, statement_s=5.0, silence_s=5.0)
 """No test waits as long as a cell may."""
 NORTH, SOUTH = "north cell", "süd: 2"
+FORWARDERS = {NORTH: "forward_north", SOUTH: "forward_south"}
+_MODEL = "fleet_model"
 _numbers = itertools.count()
 
 
@@ -36,11 +38,19 @@ def server() -> Iterator[PostgresServer]:
 
 
 def started(folder: Path) -> PostgresServer:
-    """A server with the roles of a fleet."""
+    """A server with the roles of a fleet, and an empty fleet of which each test has a copy."""
     server = PostgresServer(folder)
     server.start()
-    roles = ("forward_north", "forward_south", "quality")
+    roles = (*FORWARDERS.values(), "quality")
     server.execute(*(f"CREATE ROLE {name} LOGIN PASSWORD '{PASSWORD}'" for name in roles))
+    server.execute(f"CREATE DATABASE {_MODEL}")
+    with pytest.MonkeyPatch.context() as environment:
+        environment.setenv(PASSWORD_VARIABLE, PASSWORD)
+        owner = FleetDatabase(address(server.url(postgres.OWNER, _MODEL)), QUICK)
+        layout.create(owner)
+        for name, forwarder in FORWARDERS.items():
+            layout.add_cell(owner, name, forwarder)
+        owner.close()
     return server
 
 
@@ -52,12 +62,10 @@ class Fleet:
         self.database = f"fleet_{next(_numbers)}"
         self._folder = folder
         self._open: list[FleetDatabase | CellRecords | RunStore] = []
-        server.execute(f"CREATE DATABASE {self.database}")
+        server.execute(f"CREATE DATABASE {self.database} TEMPLATE {_MODEL}")
         self.owner = self.connected(postgres.OWNER)
-        layout.create(self.owner)
         self.places = {
-            NORTH: layout.add_cell(self.owner, NORTH, "forward_north"),
-            SOUTH: layout.add_cell(self.owner, SOUTH, "forward_south"),
+            name: layout.add_cell(self.owner, name, role) for name, role in FORWARDERS.items()
         }
 
     def connected(self, user: str, limits: FleetTimeLimits = QUICK) -> FleetDatabase:
@@ -77,8 +85,8 @@ class Fleet:
     def delivery(self, cell: str, folder: Path | None = None) -> Delivery:
         records = CellRecords(folder or self.folder(cell))
         self._open.append(records)
-        user = {NORTH: "forward_north", SOUTH: "forward_south"}[cell]
-        return Delivery(cell, records, self.connected(user), "cellctl 0.1.0 (test)")
+        user = self.connected(FORWARDERS[cell])
+        return Delivery(cell, records, user, "cellctl 0.1.0 (test)")
 
     def execute(self, statement: str) -> None:
         """Execute a statement as somebody who has every right."""

@@ -45,30 +45,30 @@ def url(fleet: Fleet) -> str:
     return fleet.server.url("quality", fleet.database)
 
 
-@pytest.mark.parametrize(
-    ("words", "found"),
-    [
-        ((), [(SOUTH, 2), (SOUTH, 1), (NORTH, 1)]),
-        (("--limit", "1"), [(SOUTH, 2)]),
-        (("--cell", NORTH), [(NORTH, 1)]),
-        (("--serial", "SAT-0042"), [(SOUTH, 1), (NORTH, 1)]),
-        (("--serial", "SAT-0042%"), [(SOUTH, 2)]),
-        (("--recipe", "panel 500 x 1000", "--operator", "OP-7", "--result", "good"),
-         [(SOUTH, 1), (NORTH, 1)]),
-        (("--fault", "207"), [(SOUTH, 2)]),
-        (("--fault", "304"), [(SOUTH, 2)]),
-        (("--calibration", "ef" * 32), [(SOUTH, 2)]),
-        (("--until", "2020-01-01"), []),
-        (("--since", "2020-01-01", "--until", "2100-01-01", "--result", "aborted"), [(SOUTH, 2)]),
+FOUND: dict[tuple[str, ...], list[tuple[str, int]]] = {
+    (): [(SOUTH, 2), (SOUTH, 1), (NORTH, 1)],
+    ("--limit", "1"): [(SOUTH, 2)],
+    ("--cell", NORTH): [(NORTH, 1)],
+    ("--serial", "SAT-0042"): [(SOUTH, 1), (NORTH, 1)],
+    ("--serial", "SAT-0042%"): [(SOUTH, 2)],
+    ("--recipe", "panel 500 x 1000", "--operator", "OP-7", "--result", "good"): [
+        (SOUTH, 1),
+        (NORTH, 1),
     ],
-)  # fmt: skip
-def test_runs_of_all_cells_are_found(
-    url: str, words: tuple[str, ...], found: list[tuple[str, int]]
-) -> None:
-    told = json.loads(run("runs", "--json", *words, url=url).stdout)
-    assert [(one["cell"], one["number"]) for one in told] == found
-    listed = run("runs", *words, url=url)
-    assert len(re.findall(r"SAT-0042", listed.stdout)) == len(found)
+    ("--fault", "207"): [(SOUTH, 2)],
+    ("--fault", "304"): [(SOUTH, 2)],
+    ("--calibration", "ef" * 32): [(SOUTH, 2)],
+    ("--until", "2020-01-01"): [],
+    ("--since", "2020-01-01", "--until", "2100-01-01", "--result", "aborted"): [(SOUTH, 2)],
+}
+
+
+def test_runs_of_all_cells_are_found(url: str) -> None:
+    for words, found in FOUND.items():
+        told = json.loads(run("runs", "--json", *words, url=url).stdout)
+        assert [(one["cell"], one["number"]) for one in told] == found, words
+        listed = run("runs", *words, url=url)
+        assert len(re.findall(r"SAT-0042", listed.stdout)) == len(found), words
 
 
 def test_a_part_that_a_gauge_has_spoilt_is_marked(url: str, fleet: Fleet) -> None:
