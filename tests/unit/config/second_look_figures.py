@@ -37,13 +37,13 @@ FIGURES = (
         "deck_thickness_mm = 15.0",
         "deck_thickness_mm = 3.0",
         "recipes.0.deck_thickness_mm",
-        "15, give or take 1: thickness_mm of its features",
+        "15, give or take 0.048: thickness_mm of its features",
     ),
     deck(
         "deck_thickness_mm = 15.0",
         "deck_thickness_mm = 18.0",
         "recipes.0.deck_thickness_mm",
-        "15, give or take 1: thickness_mm of its features",
+        "15, give or take 0.048: thickness_mm of its features",
     ),
     deck_elsewhere(
         "deck_thickness_sigma_mm = 0.012",

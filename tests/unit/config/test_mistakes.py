@@ -13,6 +13,7 @@ from cellctl.config.commissioning import examine_before_commissioning
 from tests.unit.config.between_arms import BETWEEN_ARMS
 from tests.unit.config.mistake import Mistake, Undecided
 from tests.unit.config.mistakes import MISTAKES
+from tests.unit.config.passed_before import PASSED_BEFORE, PASSES_WITH_REMARK
 from tests.unit.config.protective_mistakes import PROTECTIVE
 from tests.unit.config.second_look_figures import FIGURES, OTHERS
 from tests.unit.config.second_look_places import PLACES
@@ -48,7 +49,8 @@ def written(
 SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
 ALL = (
-    MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS + TOUCHING_CELLS
+    *(MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS),
+    *(TOUCHING_CELLS + PASSED_BEFORE),
 )
 
 
@@ -83,7 +85,9 @@ def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) 
     assert all(one.line is not None or one.key == "simulated" for one in found)
 
 
-@pytest.mark.parametrize("case", UNDECIDED + MEANT_PERHAPS, ids=lambda one: one.reason)
+@pytest.mark.parametrize(
+    "case", UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK, ids=lambda one: one.reason
+)
 def test_what_nobody_can_decide_passes_with_a_remark_where_there_is_one(
     tmp_path: Path, case: Undecided
 ) -> None:

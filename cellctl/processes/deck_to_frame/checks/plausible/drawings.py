@@ -9,6 +9,7 @@ from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.vision.features.hole import Hole
 
 _MOST_HOLE_MM = 50.0
 """A wider one leaves no face round it in a field of view of 0.3 m."""
@@ -16,12 +17,16 @@ _LEAST_MM, _LEAST_HOLE_MM = 5.0, 0.5
 """Holes of a part are spread wider, and are wider, than this: else they stand there in metres."""
 _OUTWARD = 0.9
 """Cosine: the heads see both parts from above, and the deck comes from there (mission A3)."""
-_PIN_MM = 0.5
-"""A pin fits both holes with a few hundredths."""
-_BORE = (0.8, 2.0)
-"""Limits of a deck's bore over the thread below it: a core hole and a generous clearance hole."""
+_PIN_MM = 0.1
+"""One pin goes through both holes, with a few hundredths in each."""
+_BORE = (0.8, 1.65)
+"""Limits of a deck's bore over the thread below it, which a drawing has as nominal or as core
+diameter: from a core hole to the coarse clearance hole of ISO 273, over the core of M2 or more."""
 _ABOVE_MM = 1.0
-"""Height above the face up to which a hole may lie: z = 0 is the face that the heads see."""
+"""Height above the outer face of a deck up to which a bore may lie, on a boss."""
+_FLATTEST = 0.57
+"""Depth of a countersink of 120 degrees over half of what it is wider than its bore; no screw has a
+flatter head."""
 _SHARE_OF_THRESHOLD = 3.0
 """A measured pose counts when its standard deviation is a third of the threshold."""
 
@@ -77,12 +82,26 @@ def _overlapping(drawing: PartDrawing) -> Iterator[ConfigIssue]:
 
 def _heights(drawing: PartDrawing, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
     deep_mm = recipe.deck_thickness_mm if drawing.part == "deck" else np.inf
-    for name in drawing.holes:
+    for name, hole in drawing.holes.items():
         place_mm = drawing.position_mm(name)
-        if not -deep_mm <= place_mm[2] <= _ABOVE_MM:
-            allowed = f"z from -{deep_mm:g} to {_ABOVE_MM:g}: z = 0 is the face that the heads see"
+        top_mm, why = _highest(drawing.part, hole)
+        if not -deep_mm <= place_mm[2] <= top_mm:
+            least = "" if np.isinf(deep_mm) else f"from -{deep_mm:g} "
+            allowed = (
+                f"z {least}up to {top_mm:.2g}: z = 0 is the face that the heads see, and {why}"
+            )
             yield drawing.hole_issue(name, "position_mm", str(place_mm.tolist()), allowed)
             return
+
+
+def _highest(part: str, hole: Hole) -> tuple[float, str]:
+    """How high (mm) the rim of a hole may lie, and why."""
+    if part == "frame":
+        return 0.0, "the deck sits on it: a rim lies in it or, under a chamfer, below"
+    if hole.countersink_m is not None:
+        deep_mm = _FLATTEST * (hole.countersink_m - hole.diameter_m) / 2.0 / MM
+        return -deep_mm, f"the rim of the bore lies below a countersink, {deep_mm:.2g} mm or more"
+    return _ABOVE_MM, "a boss is seldom higher"
 
 
 def _uncertain(drawing: PartDrawing, recipe: DeckRecipe) -> Iterator[ConfigIssue]:
@@ -111,10 +130,10 @@ def _pairs(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:
         above_mm, below_mm = hole.diameter_m / MM, below.diameter_m / MM
         if hole.kind == "pin":
             wrong = abs(above_mm - below_mm) > _PIN_MM
-            wanted = f"{below_mm:g}"
+            wanted = f"{below_mm:g}, give or take {_PIN_MM:g}, as one pin goes through both"
         else:
             wrong = not _BORE[0] * below_mm <= above_mm <= _BORE[1] * below_mm
-            wanted = f"{_BORE[0] * below_mm:g} to {_BORE[1] * below_mm:g}"
+            wanted = f"{_BORE[0] * below_mm:.3g} to {_BORE[1] * below_mm:.3g} for one screw"
         if wrong:
             allowed = f"{wanted}; hole {name} of {frame.written} has {below_mm:g}"
             yield deck.hole_issue(name, "diameter_mm", f"{above_mm:g}", allowed)

@@ -32,9 +32,9 @@ _MOST_OVER_TARGET = 5.0
 """Limit of force over target force. The guard stops in time to keep a limit of 1.4 times."""
 _LEAST_STOP_MS = 20.0
 """A few cycles of a controller, before its brakes even begin."""
-_THICKNESS_OFF_MM = 1.0
-"""How far a measured deck may be off its drawing: more than plates are, and little enough that what
-is left of a stand-off of centimetres is driven slowly."""
+_THICKNESS_SIGMAS = 4.0
+"""Two statements of one thickness may differ by so many standard deviations over the parts: what
+the contact window has for it. From there on the fast travel meets the frame."""
 _LEAST_BOARD_MM = 50.0
 """A board of less fills a sixth of the picture of a small-field head, and calibrates its middle."""
 
@@ -134,7 +134,15 @@ def _thickness(recipe: DeckRecipe, key: str, folder: Path) -> Iterator[ConfigIss
             return
     if features.thickness_m is None:
         return  # a remark says that there is nothing to compare with
-    drawn_mm = features.thickness_m / MM
-    if abs(recipe.deck_thickness_mm - drawn_mm) > _THICKNESS_OFF_MM:
-        allowed = f"{drawn_mm:g}, give or take {_THICKNESS_OFF_MM:g}: thickness_mm of its features"
+    drawn_mm, sigma_mm = features.thickness_m / MM, recipe.deck_thickness_sigma_mm
+    window_mm = recipe.mating.contact_window_mm
+    most_mm = min(_THICKNESS_SIGMAS * sigma_mm, window_mm)
+    # Both are decimals of a file: their difference is not exact.
+    if abs(recipe.deck_thickness_mm - drawn_mm) > most_mm + 1e-6:
+        allowed = (
+            f"{drawn_mm:g}, give or take {most_mm:.3g}: thickness_mm of its features, and "
+            f"{_THICKNESS_SIGMAS:g} times deck_thickness_sigma_mm = {sigma_mm:g}, at most "
+            f"contact_window_mm = {window_mm:g}; a deck that is thicker by more meets its frame on "
+            "the fast travel. Measure the decks, then write one thickness in both files"
+        )
         yield ConfigIssue(f"{key}.deck_thickness_mm", f"{recipe.deck_thickness_mm:g}", allowed)
