@@ -32,6 +32,10 @@ class ProcessDefinition(ABC):
     settings_model: ClassVar[type[Section]] = NoSettings
     """Keys of ``[processes.NAME]``: what holds for all recipes of the process."""
     roles: ClassVar[Mapping[str, Role]]
+    stores: ClassVar[tuple[str, ...]] = ()
+    """Names of its calibrations, those of each recipe without their number: by them a folder of
+    calibrations is known as that of another cell. Here, because who reads a cell file loads no
+    solver; empty where the process stores none, or does not say."""
 
     @classmethod
     @abstractmethod

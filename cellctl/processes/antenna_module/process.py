@@ -16,7 +16,7 @@ from cellctl.processes.antenna_module.faults.plugging import (
 )
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.roles import ARM, ROLES
+from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
@@ -42,6 +42,16 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
     recipe_model = AntennaRecipe
     settings_model = AntennaSettings
     roles = ROLES
+    stores = (
+        CAMERA_1,
+        CAMERA_2,
+        "flange_T_cam1",
+        "base_T_cam2",
+        "reference",
+        "plug_correction",
+        "tool_turn",
+        "tool",
+    )
     # Of the plug alone: what is wrong with a socket is told as SocketUnsound.
     spoiled_by = FORCE_FAULTS | {MovedOnRelease, GrippedOffTwice, ContactMissing, ContactBent}
 

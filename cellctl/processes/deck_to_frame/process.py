@@ -10,7 +10,13 @@ from cellctl.config.recipe import Recipe
 from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
-from cellctl.processes.deck_to_frame.roles import ROLES
+from cellctl.processes.deck_to_frame.record_names import (
+    BOARD_TRANSFER_NAME,
+    CONTACT_STIFFNESS_NAME,
+    PAYLOAD_NAME,
+    STOP_LATENCY_NAME,
+)
+from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, ROLES
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.records.entries import Calibration, RunRecord
 from cellctl.records.replayed import Replayed
@@ -38,6 +44,15 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
     recipe_model = DeckRecipe
     settings_model = DeckSettings
     roles = ROLES
+    stores = (
+        HEAD_1,
+        HEAD_2,
+        "base_frame",
+        BOARD_TRANSFER_NAME,
+        PAYLOAD_NAME,
+        STOP_LATENCY_NAME,
+        CONTACT_STIFFNESS_NAME,
+    )
     spoiled_by = frozenset({SeatedOffPosition})
 
     def __init__(self, services: CellServices) -> None:

@@ -41,6 +41,7 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
     recipe_model = PegRecipe
     settings_model = PegSettings
     roles = ROLES
+    stores = ("contact_loop", "panel_reference")
     spoiled_by = frozenset({PegNotInserted, PegJammed, PegWedged, HoleBlocked, HoleAbsent})
 
     @classmethod

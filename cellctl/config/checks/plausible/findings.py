@@ -5,6 +5,7 @@ from pathlib import Path
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.plausible.arms import arm_issues
+from cellctl.config.checks.plausible.calibration_folder import calibration_folder_issues
 from cellctl.config.checks.plausible.line import line_issues
 from cellctl.config.checks.plausible.loads import load_issues
 from cellctl.config.checks.plausible.mounted import mounted_issues
@@ -33,3 +34,4 @@ def plausibility_issues(cell: CellConfig, folder: Path, bad: Set[str]) -> Iterat
     yield from wait_issues(cell, bad)
     yield from speed_bound_issues(cell, bad)
     yield from place_issues(cell, folder)
+    yield from calibration_folder_issues(cell, folder)
