@@ -16,6 +16,7 @@ from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingPro
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from fakes.scenes.deck_on_frame.scenario import Pins
 from tests.rigs.mating.cell import MatingCell
+from tests.rigs.mating.seat_truth import seat_truth
 from tests.rigs.mating.simulated_loop import run_simulated
 
 ARM_STIFFNESS_N_M = 1e6
@@ -24,6 +25,8 @@ STIFFNESS_RANGE = (1e5, 1e7)
 LATENCY_RANGE_S = (0.010, 0.250)
 DECK_THICKNESS_M = 0.015
 SEAT_TOLERANCE_M = 1e-4
+PIN_LIMIT_MM = 0.2
+"""What a seated deck may lie beside its place at the pin holes."""
 FILTER_SAMPLES = 20
 """A lateral peak is that of the mean over 20 ms: two noisy components only add up."""
 
@@ -56,8 +59,14 @@ class Trial:
     sensed_filtered_peak_n: float = 0.0
     final_true_n: float = float("nan")
     final_sensed_n: float = float("nan")
+    judged_gap_mm: float = float("nan")
+    """What the verdict took for the gap."""
     true_gap_mm: float = float("nan")
-    """Gap of the deck's middle over its seat while holding, less what the contact gives way."""
+    """Gap of the deck's middle over its seat while holding, less what the seat gives way."""
+    true_opening_mm: float = float("nan")
+    """Greatest distance between deck and seat meanwhile."""
+    true_pin_error_mm: float = float("nan")
+    """Greatest distance of a pin from the axis of its hole meanwhile."""
     speed_mm_s: float = 0.0
     slow_s: float = 0.0
     duration_s: float = 0.0
@@ -79,8 +88,13 @@ class Trial:
     @property
     def false_complete(self) -> bool:
         """It said so, and truth disagrees."""
-        wrong_force = not 35.0 <= self.final_true_n <= 45.0
-        return self.complete and (wrong_force or abs(self.true_gap_mm) > 1e3 * SEAT_TOLERANCE_M)
+        # Each says what a good seat is, so that what is not a number is a false one.
+        good = (
+            35.0 <= self.final_true_n <= 45.0
+            and abs(self.true_gap_mm) <= 1e3 * SEAT_TOLERANCE_M
+            and self.true_pin_error_mm <= PIN_LIMIT_MM
+        )
+        return self.complete and not good
 
     def row(self) -> dict[str, Any]:
         """Plain data."""
@@ -113,13 +127,11 @@ class _Watcher:
             self.hook(self.cell, progress)
 
     def _hold(self) -> None:
-        world = self.cell.world
-        parts = world.placed.parts
-        assert parts is not None
-        force_n = self.trial.final_true_n = world.payload.contact_force_n
-        above_m = self.cell.true_pose().translation[2] - parts.deck_thickness_m
-        above_m += force_n / self.trial.stiffness_n_m
-        self.trial.true_gap_mm = float(above_m) * 1e3
+        world, trial = self.cell.world, self.trial
+        trial.final_true_n = world.payload.contact_force_n
+        truth = seat_truth(world, self.cell.true_pose())
+        trial.true_gap_mm, trial.true_opening_mm = truth.gap_mm, truth.opening_mm
+        trial.true_pin_error_mm = truth.pin_error_mm
 
 
 def draw_trial(seed: int) -> Trial:
@@ -195,6 +207,7 @@ def plan_for(cell: MatingCell, settings: MatingSettings) -> MatingPlan:
 def _take_result(trial: Trial, result: MatingResult) -> None:
     trial.outcome = result.outcome.value
     trial.final_sensed_n = result.verdict.force_n
+    trial.judged_gap_mm = result.verdict.gap_m * 1e3
     trial.sensed_filtered_peak_n = result.statistics.peak_filtered_fz_n
     trial.steps = len(result.creep) - 1
     trial.final_lateral_n = result.verdict.lateral_n
