@@ -9,7 +9,7 @@ true force reaches 50 N.
 import argparse
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
@@ -53,22 +53,27 @@ def main() -> int:
     arguments = parser.parse_args()
     console = Console(width=150)
     seeds = range(arguments.seed, arguments.seed + arguments.n)
-    rigid_seeds = () if arguments.giving_way else seeds
+    kinds = ("giving way",) if arguments.giving_way else ("giving way", "rigid")
+    found: dict[str, list[Trial]] = {kind: [] for kind in kinds}
     with ProcessPoolExecutor(WORKERS, mp_context=get_context("spawn")) as pool:
-        giving = list(pool.map(partial(_run, compliant=True), seeds))
-        rigid = list(pool.map(partial(_run, compliant=False), rigid_seeds))
-    if rigid:
-        console.print(_table("Pins: rigid", rigid))
-    console.print(_table("Pins: giving way", giving))
-    console.print(spread(giving))
-    RESULT.parent.mkdir(exist_ok=True)
-    rows = {"rigid": rigid, "gives way": giving}
-    text = json.dumps({key: [one.row() for one in rows[key]] for key in rows}, indent=1)
-    RESULT.write_text(text, encoding="utf-8")
-    missed = [line for trial in giving for line in _missed(trial)]
+        for kind, trials in found.items():
+            for trial in pool.map(partial(_run, compliant=kind != "rigid"), seeds):
+                trials.append(trial)
+                _save(found)  # an interrupted campaign keeps what it has
+                console.print(f"{kind}, seed {trial.seed}: {trial.outcome} {trial.text}")
+    for kind, trials in found.items():
+        console.print(_table(f"Pins: {kind}", trials))
+    console.print(spread(found["giving way"]))
+    missed = [line for trial in found["giving way"] for line in _missed(trial)]
     for line in missed:
         console.print(f"MISSED: {line}", style="bold red")
     return 1 if missed else 0
+
+
+def _save(found: Mapping[str, Sequence[Trial]]) -> None:
+    RESULT.parent.mkdir(exist_ok=True)
+    rows = {kind: [trial.row() for trial in trials] for kind, trials in found.items()}
+    RESULT.write_text(json.dumps(rows, indent=1), encoding="utf-8")
 
 
 def _run(seed: int, *, compliant: bool) -> Trial:
