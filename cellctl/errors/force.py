@@ -73,7 +73,8 @@ class GuardDied(ForceError):
     number = 510
     text = "Force guard is not running"
     cause = "The guard process crashed, was killed, or hangs."
-    remedy = "See the guard's log; Reset restarts it. Motion is impossible without it."
+    remedy = "Clear, then Reset starts a new one; nothing moves without it. Why it ended is in the "
+    remedy += "daemon's journal (`journalctl -u cellctl`; of a demo `daemon.log` in its folder)."
 
 
 class GuardRefused(ForceError):

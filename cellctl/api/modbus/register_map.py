@@ -173,7 +173,10 @@ STATUS_BITS: tuple[tuple[str, str], ...] = (
     ("done", "the last command taken has ended; see result"),
     ("error", "a fault is latched"),
     ("warning", "an alarm is active that does not stop the cell"),
-    ("heartbeat_lost", "plc_heartbeat stands still"),
+    (
+        "heartbeat_lost",
+        "plc_heartbeat stands still; off before its first change, when Reset is refused (0x101)",
+    ),
     ("calibration_ok", "every calibration that the recipe needs is valid"),
     ("simulation", "the devices are simulated; no part of this cell is real"),
     ("manual", "a robot is not in remote mode"),

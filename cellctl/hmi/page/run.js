@@ -63,7 +63,7 @@ function state(s) {
     h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, label(s.step.text)) : null,
     h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
     ...s.forces.filter((one) => one.presses_n).map((one) => h("p", { class: "bad pressing" }, `■ ${t("presses", shown(one.presses_n, 1), one.sensor)}`)),
-    h("p", { id: "next" }, next(s))];
+    h("p", { class: "live", id: "next" }, next(s))];
 }
 
 // What is to be done, in the words of state and mode; in Idle, why nothing can be started.

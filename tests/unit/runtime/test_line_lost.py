@@ -49,6 +49,7 @@ async def test_before_the_contact_it_holds(rig: DaemonRig, step: int) -> None:
     await rig.to(State.HELD)
     assert rig.shown().first_out_alarm == LineLost.number
     assert rig.contact.matings == 0
+    assert [one.number for one in (await rig.record()).alarms] == [LineLost.number]
     await at_rest(rig)
 
 

@@ -101,8 +101,9 @@ def test_a_silent_daemon_makes_the_page_stale_and_it_comes_back(
         expect(screen.button(name)).to_be_disabled()
     for name in ("stop", "abort"):
         expect(screen.button(name)).to_be_enabled()
-    struck = "getComputedStyle(document.querySelector('.live')).textDecorationLine"
-    assert screen.tab.evaluate(struck) == "line-through"
+    for shown in (".live", "#next"):
+        struck = f"getComputedStyle(document.querySelector('{shown}')).textDecorationLine"
+        assert screen.tab.evaluate(struck) == "line-through", shown
     paper.silent = False
     expect(screen.tab.locator("#band")).to_be_empty()
     expect(screen.button("reset")).to_be_enabled()
@@ -173,6 +174,16 @@ def test_a_missing_value_is_a_dash(screen: Screen, paper: PaperDaemon) -> None:
     expect(screen.tab.locator("#errors td.num").first).to_have_text("— mm")
 
 
+def test_a_force_of_which_nothing_has_come_is_not_known(screen: Screen, paper: PaperDaemon) -> None:
+    old = snapshot()
+    unknown = [axis | {"value": None} for axis in old["forces"][0]["wrench"]]
+    old["forces"][0] |= {"stale": True, "age_s": 24.9, "wrench": unknown}
+    paper.snapshot = old
+    expect(screen.tab.locator("#forces")).to_contain_text("not known: the newest value")
+    expect(screen.tab.locator("#forces")).to_contain_text("25 s old")
+    expect(screen.tab.locator("#forces .value")).to_contain_text("— N")
+
+
 def test_gloves_find_every_control_of_the_run_screen(screen: Screen) -> None:
     screen.sign_in()
     sizes = screen.tab.evaluate(
@@ -222,7 +233,7 @@ def test_from_a_run_to_all_others_that_used_the_same_calibration(screen: Screen)
     expect(tab.locator("#found")).to_contain_text("SAT-1")
 
 
-SIZES = ((1280, 800), (1080, 1920), (1024, 600))
+SIZES = ((1280, 800), (1080, 1920), (1024, 600), (768, 1024))
 
 
 def test_nothing_is_cut_off_on_any_panel_and_the_commands_stay_in_reach(screen: Screen) -> None:
@@ -243,7 +254,8 @@ def test_nothing_is_cut_off_on_any_panel_and_the_commands_stay_in_reach(screen: 
                 if wide > width or beyond or head > (80 if width >= 1280 else 160):
                     cut.append((language, width, name, wide, beyond, head))
                 if name == "run":
-                    abort = screen.button("abort").bounding_box()
-                    assert abort["y"] + abort["height"] < height
+                    for command in ("stop", "abort"):
+                        seen = screen.button(command).bounding_box()
+                        assert seen["y"] + seen["height"] < height
         tab.click("#language")
     assert cut == []
