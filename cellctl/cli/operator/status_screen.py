@@ -15,7 +15,6 @@ from cellctl.api.local_socket.report import (
 )
 from cellctl.cli.operator.no_end import without_end
 from cellctl.errors import CellError
-from cellctl.packml.reject import RejectCode
 from cellctl.records.outcome import outcome
 
 _COLOURS = {
@@ -137,7 +136,7 @@ def _next(report: StatusReport) -> str:
         return f"{cause}, then `cellctl clear`"
     if report.state == "IDLE":
         refused = report.permitted.get(_BEGINS.get(report.mode, ""), "")
-        if refused == RejectCode.RECORDS_NOT_READY.text:
+        if refused and report.records:
             refused += "; `records` below says what is to be done"
         return f"Start is refused: {refused}" if refused else _NEXT_IN_IDLE[report.mode]
     if (report.state, report.mode) == ("COMPLETED", "MAINTENANCE"):

@@ -393,6 +393,10 @@ def test_the_screen_calls_an_awaited_touch_no_stop_request() -> None:
         ({"state": "STOPPED"}, "`cellctl reset`"),
         ({"state": "IDLE", "permitted": {"start": ""}}, "`cellctl start --serial SERIAL`"),
         ({"state": "IDLE", "permitted": {"start": "a calibration"}}, "refused: a calibration"),
+        (
+            {"state": "IDLE", "permitted": {"start": "the run store"}, "records": "F803"},
+            "refused: the run store; `records` below says",
+        ),
         ({"state": "EXECUTE"}, "`cellctl hold`"),
         ({"state": "HELD"}, "`cellctl unhold`"),
         ({"state": "COMPLETED"}, "open the gripper; then `cellctl reset`"),
