@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from fakes.gentl.build import build_producer
+from tests.rigs.wire.producer import built_once
 
 
 @pytest.fixture(scope="session")
 def producer(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The fake GenTL producer, compiled once."""
-    return build_producer(tmp_path_factory.mktemp("producer"))
+    return built_once(tmp_path_factory)

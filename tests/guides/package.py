@@ -89,7 +89,4 @@ def run(*arguments: str, path: tuple[Path, ...] = ()) -> "subprocess.CompletedPr
 
 def environment(*path: Path) -> dict[str, str]:
     """Environment of a program that finds packages in ``path`` first."""
-    return os.environ | {
-        "PYTHONPATH": os.pathsep.join(str(entry) for entry in path),
-        "PYTHONDONTWRITEBYTECODE": "1",
-    }
+    return os.environ | {"PYTHONPATH": os.pathsep.join(str(entry) for entry in path)}

@@ -48,8 +48,10 @@ def bundle(tmp_path: Path) -> Path:
     return folder
 
 
-def install(bundle: Path, signers: Path | str) -> subprocess.CompletedProcess[str]:
-    settings = {"PATH": "/usr/bin:/bin", "INTO": str(bundle.parent / "pc"), "PYTHON": "python3"}
+def install(
+    bundle: Path, signers: Path | str, python: Path | str = "python3"
+) -> subprocess.CompletedProcess[str]:
+    settings = {"PATH": "/usr/bin:/bin", "INTO": str(bundle.parent / "pc"), "PYTHON": str(python)}
     return subprocess.run(
         [bundle / "systemd" / "install.sh", "install"],
         env={**settings, "SIGNERS": str(signers), "PIP_NO_INDEX": "1"},
@@ -103,11 +105,21 @@ def test_without_a_list_of_signers_nobody_counts(bundle: Path) -> None:
     assert "that says whose signature counts" in refused.stderr
 
 
-@pytest.mark.parametrize("signed", [True, False])
-def test_one_that_is_whole_is_built(bundle: Path, signed: bool) -> None:
-    """Up to its packages, which this one has not; an unsigned one where that is said."""
-    if not signed:
-        unsigned(bundle)
-    built = install(bundle, bundle.parent / "signers" if signed else "none")
+def test_one_that_is_whole_is_built(bundle: Path) -> None:
+    """Up to its packages, which this one has not."""
+    built = install(bundle, bundle.parent / "signers")
     assert "installing release 1.2.3-abc" in built.stdout
     assert "a-package-of-nobody" in built.stderr
+
+
+def test_an_unsigned_one_is_built_where_that_is_said(bundle: Path) -> None:
+    """Up to its environment, in which nothing would differ from that of a signed one."""
+    unsigned(bundle)
+    python = bundle.parent / "python"
+    python.write_text(
+        '#!/bin/sh\n[ "$1" != -m ] && exec python3 "$@"\necho makes no "$2" >&2\nexit 1\n'
+    )
+    python.chmod(0o755)
+    built = install(bundle, "none", python)
+    assert "installing release 1.2.3-abc" in built.stdout
+    assert "makes no venv" in built.stderr

@@ -62,17 +62,25 @@ def loaded_by(words: str, heavy: Sequence[str] = HEAVY) -> tuple[str, str]:
     return done.stdout, found.strip()
 
 
+MESSAGES = ("cellctl.api.local_socket.messages",)
+"""Of the daemon; whoever does not ask it need not wait until they are loaded."""
+
+
 @pytest.mark.parametrize(
-    "words",
-    ["--help", "status", "faults", "faults 207", "runs list --data-dir absent", "runs --help"],
+    ("words", "besides"),
+    [
+        ("--help", MESSAGES),
+        ("status", ()),
+        ("faults 207", MESSAGES),
+        ("faults", ()),
+        ("runs list --data-dir absent", MESSAGES),
+        ("runs --help", ()),
+    ],
 )
-def test_a_command_that_computes_nothing_loads_nothing_that_computes(words: str) -> None:
-    assert loaded_by(words)[1] == ""
-
-
-@pytest.mark.parametrize("words", ["--help", "faults 207", "runs list --data-dir absent"])
-def test_whoever_asks_no_daemon_does_not_wait_for_its_messages(words: str) -> None:
-    assert loaded_by(words, ("cellctl.api.local_socket.messages",))[1] == ""
+def test_a_command_that_computes_nothing_loads_nothing_that_computes(
+    words: str, besides: tuple[str, ...]
+) -> None:
+    assert loaded_by(words, HEAVY + besides)[1] == ""
 
 
 def test_runs_are_listed_without_the_database_layer(tmp_path: Path) -> None:
@@ -84,20 +92,22 @@ def test_runs_are_listed_without_the_database_layer(tmp_path: Path) -> None:
     assert heavy == ""
 
 
-@pytest.mark.parametrize("name", ["deck", "antenna", "insertion-pin", "small"])
-def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(name: str) -> None:
-    out, heavy = loaded_by(
-        f"check config/{name}.toml", ("matplotlib", "cv2", "sqlalchemy", "pandas")
-    )
+FINDS_ROOTS = ("scipy.optimize", "scipy.signal", "scipy.stats")
+"""Only for matings and views of a board: these are spread by a low-discrepancy sequence of SciPy's
+statistics."""
+
+
+@pytest.mark.parametrize(
+    ("name", "besides"),
+    [("deck", ()), ("antenna", ()), ("insertion-pin", FINDS_ROOTS), ("small", FINDS_ROOTS)],
+)
+def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(
+    name: str, besides: tuple[str, ...]
+) -> None:
+    heavy = ("matplotlib", "cv2", "sqlalchemy", "pandas", *besides)
+    out, found = loaded_by(f"check config/{name}.toml", heavy)
     assert "good." in out, out
-    assert heavy == ""
-
-
-@pytest.mark.parametrize("name", ["insertion-pin", "small"])
-def test_only_matings_and_views_of_a_board_load_what_finds_roots(name: str) -> None:
-    """The views of a board are spread by a low-discrepancy sequence of SciPy's statistics."""
-    heavy = ("scipy.optimize", "scipy.signal", "scipy.stats")
-    assert loaded_by(f"check config/{name}.toml", heavy)[1] == ""
+    assert found == ""
 
 
 def test_the_version_is_told_with_its_revision() -> None:

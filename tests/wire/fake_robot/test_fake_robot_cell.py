@@ -88,7 +88,7 @@ async def test_cell_from_start_to_end() -> None:
 
 async def test_hands_of_an_operator_from_a_terminal() -> None:
     """What docs/commissioning.md says before a procedure on a cell that stays up."""
-    async with running() as (_, ready):
+    async with running() as (process, ready):
         port = ("--port", str(ready["ports"]["control"]))
 
         async def hands(*words: str) -> Result:
@@ -104,15 +104,11 @@ async def test_hands_of_an_operator_from_a_terminal() -> None:
             assert refused.exit_code == 1
             assert "fake cell refused" in refused.stderr
         assert (await hands("present", "frame")).exit_code == 2
+        assert (await ask(ready["ports"]["control"], cmd="shutdown"))["status"] == "ok"
+        assert await asyncio.wait_for(process.wait(), 15) == 0
     gone = await hands("status")
     assert gone.exit_code == 1
     assert "no fake cell listens on port" in gone.stderr
-
-
-async def test_shutdown_by_the_control_port() -> None:
-    async with running() as (process, ready):
-        assert (await ask(ready["ports"]["control"], cmd="shutdown"))["status"] == "ok"
-        assert await asyncio.wait_for(process.wait(), 15) == 0
 
 
 async def test_taken_port_is_said_and_ends_with_an_error() -> None:

@@ -9,8 +9,8 @@ import pytest
 
 from drivers.camera.gige.config import GigeCameraConfig, Selection
 from drivers.camera.gige.driver import GigeCamera, GigeDevice
-from fakes.gentl.build import build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras
+from tests.rigs.wire.producer import built_once
 
 LEFT, RIGHT = "GL-1", "GR-2"
 
@@ -18,7 +18,7 @@ LEFT, RIGHT = "GL-1", "GR-2"
 @pytest.fixture(scope="session")
 def producer(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The fake GenTL producer, compiled once."""
-    return build_producer(tmp_path_factory.mktemp("producer"))
+    return built_once(tmp_path_factory)
 
 
 @pytest.fixture

@@ -173,12 +173,17 @@ async def test_without_a_producer_the_variable_is_named(
     ("settings", "words"),
     [
         ({"pixel_format": "Mono14"}, "Mono8, Mono12, Mono12Packed, BayerRG8, BayerRG12"),
-        ({"exposure_s": 3.0}, "10.0 to 1000000.0"),
-        ({"region": Region(width=20, height=4000)}, "16 to 48"),
-        ({"features": {"Gain": 99.0}}, "0.0 to 24.0"),
-        ({"packet_bytes": 9004}, "576 to 9000 in steps of 4"),
-        ({"packet_delay_ticks": 100_001}, "0 to 100000"),
         ({"features": {"Binning": 2}}, "no feature Binning; it has"),
+        *(
+            pytest.param(*one, marks=pytest.mark.figures)
+            for one in (
+                ({"exposure_s": 3.0}, "10.0 to 1000000.0"),
+                ({"region": Region(width=20, height=4000)}, "16 to 48"),
+                ({"features": {"Gain": 99.0}}, "0.0 to 24.0"),
+                ({"packet_bytes": 9004}, "576 to 9000 in steps of 4"),
+                ({"packet_delay_ticks": 100_001}, "0 to 100000"),
+            )
+        ),
     ],
 )
 async def test_a_refused_feature_says_what_is_allowed(

@@ -4,9 +4,12 @@ import os
 import subprocess
 import sys
 
+import pytest
+
 from tests.rigs.kept import Kept, kept
 
 
+@pytest.mark.figures
 def test_a_short_soak() -> None:
     # It runs in a process of its own: that of the tests keeps what other tests have not let go.
     times = ["--cycles", "5", "--pulls", "5", "--grabs", "100"]

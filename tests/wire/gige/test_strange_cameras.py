@@ -18,6 +18,8 @@ from fakes.gentl.formats import Format
 from tests.wire.gige.conftest import LEFT, camera
 
 LONG = pytest.mark.long
+FIGURES = pytest.mark.figures
+"""Of all kinds of cameras; each has a producer and a process of its own."""
 AUTOMATIC = """
   <Enumeration Name="ExposureAuto" NameSpace="Standard">
     <EnumEntry Name="Off" NameSpace="Standard"><Value>0</Value></EnumEntry>
@@ -67,6 +69,7 @@ async def test_no_software_trigger(tmp_path: Path, fakes: FakeCameras) -> None:
         assert (await eye.grab()).pixels.shape == (48, 64)
 
 
+@FIGURES
 async def test_no_selector_gain_or_serial_number(tmp_path: Path, fakes: FakeCameras) -> None:
     text = description()
     for name in ("TriggerSelector", "Gain", "DeviceSerialNumber", "AcquisitionMode"):
@@ -79,6 +82,7 @@ async def test_no_selector_gain_or_serial_number(tmp_path: Path, fakes: FakeCame
     assert np.array_equal(image.pixels, expected_image(1, 64, 48, "Mono8"))
 
 
+@FIGURES
 @pytest.mark.parametrize(
     "how", ["pIsAvailable", pytest.param("pIsImplemented", marks=pytest.mark.long)]
 )
@@ -101,6 +105,7 @@ async def test_features_of_the_family_that_this_camera_lacks(
         await camera(producer, gain_db=3.0).connect()
 
 
+@FIGURES
 async def test_the_gain_of_an_older_edition(tmp_path: Path, fakes: FakeCameras) -> None:
     text = description().replace('"Gain"', '"GainAbs"').replace(">Gain<", ">GainAbs<")
     async with camera(producer_of(tmp_path, text), gain_db=4.0) as eye:
@@ -109,6 +114,7 @@ async def test_the_gain_of_an_older_edition(tmp_path: Path, fakes: FakeCameras) 
     assert image.exposure.gain_db == pytest.approx(4.0)
 
 
+@FIGURES
 async def test_a_camera_that_cannot_move_its_region(tmp_path: Path, fakes: FakeCameras) -> None:
     text = without("OffsetY", without("OffsetX", description()))
     producer = producer_of(tmp_path, text)
@@ -118,6 +124,7 @@ async def test_a_camera_that_cannot_move_its_region(tmp_path: Path, fakes: FakeC
         await camera(producer, region=Region(width=32, height=16, offset_x=8)).connect()
 
 
+@FIGURES
 @pytest.mark.parametrize(
     ("asked", "meant"),
     [("Exposuretime", "ExposureTime"), ("PacketSize", "GevSCPSPacketSize"), ("Gian", "Gain")],
@@ -132,6 +139,7 @@ async def test_a_mistyped_feature_is_answered_with_those_that_are_meant(
     assert str(said.value).count(",") < 12
 
 
+@FIGURES
 async def test_the_exposure_of_an_older_edition(tmp_path: Path, fakes: FakeCameras) -> None:
     text = description().replace('"ExposureTime"', '"ExposureTimeAbs"')
     text = text.replace("<pFeature>ExposureTime<", "<pFeature>ExposureTimeAbs<")
@@ -178,7 +186,7 @@ async def test_padded_lines_and_packed_samples(
 CHUNKS = {"ChunkModeActive": True}
 
 
-@pytest.mark.parametrize("pixel_format", ["Mono8", "Mono12Packed"])
+@pytest.mark.parametrize("pixel_format", [pytest.param("Mono8", marks=FIGURES), "Mono12Packed"])
 async def test_chunks_behind_an_image(
     tmp_path: Path, fakes: FakeCameras, pixel_format: Format
 ) -> None:
@@ -224,6 +232,7 @@ async def test_a_mosaic_as_colour_and_as_grey(producer: Path, fakes: FakeCameras
     assert np.array_equal(grey.pixels, expected)
 
 
+@FIGURES
 async def test_a_deep_mosaic_keeps_its_bits_as_colour(producer: Path, fakes: FakeCameras) -> None:
     async with camera(producer, pixel_format="BayerRG12") as eye:
         colour = await eye.grab()

@@ -90,15 +90,6 @@ def test_every_figure_of_the_page_is_in_the_pdf(recorded: Recorded, tmp_path: Pa
 
 
 @drawn
-def test_it_says_how_far_it_is(recorded: Recorded, tmp_path: Path) -> None:
-    said: list[str] = []
-    path = tmp_path / "report.pdf"
-    write_report(recorded.store, recorded.run, path, pages=pages, pdf=True, tell=said.append)
-    assert any("layout - Page 1" in step for step in said), said
-    assert logging.getLogger("weasyprint.progress").handlers == []
-
-
-@drawn
 def test_the_first_page_holds_what_is_signed(recorded: Recorded) -> None:
     first = PdfReader(recorded.pdf).pages[0].extract_text()
     for expected in ("SAT-0042", "Good part", "Acceptance", "38.4 N", "k = 2", "accepted by"):
@@ -114,12 +105,15 @@ def test_the_first_page_is_signed_however_much_it_holds(store: RunStore, tmp_pat
     store.close_run(run, RunResult.GOOD)
     for diameter_mm in (5.70, 5.95):
         store.set_gauge(run, "P1", diameter_mm, "anna")
-    write_report(store, run, tmp_path / "a.pdf", pages=pages, pdf=True)
+    told: list[str] = []
+    write_report(store, run, tmp_path / "a.pdf", pages=pages, pdf=True, tell=told.append)
     first, second = (page.extract_text() for page in PdfReader(tmp_path / "a.pdf").pages[:2])
     for expected in ("Acceptance", "performed by", "inspected by", "accepted by"):
         assert expected in first, expected
     assert "accepted by" not in second
     assert "further" in second, "the table goes on overleaf"
+    assert any("layout - Page 1" in step for step in told), "it says how far it is"
+    assert logging.getLogger("weasyprint.progress").handlers == []
 
 
 @drawn
@@ -142,9 +136,9 @@ def test_a_computer_without_the_libraries_says_which(monkeypatch: pytest.MonkeyP
 
 
 @drawn
-def test_the_command_writes_one_file(recorded: Recorded, tmp_path: Path) -> None:
+def test_the_command_writes_one_file(recorded: Recorded, store: RunStore, tmp_path: Path) -> None:
     assert recorded.said == str(recorded.pdf)
     assert recorded.pdf.read_bytes().startswith(b"%PDF-")
     html = tmp_path / "a.html"
-    assert command(recorded.store, recorded.run, html) == str(html)
+    assert command(store, start(store), html) == str(html)
     assert html.read_bytes().startswith(b"<!doctype html>")
