@@ -8,6 +8,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 from tests.guides.package import (
     ROOT,
     contract_of,
@@ -48,6 +50,7 @@ def test_the_core_finds_the_driver(installed: Path) -> None:
     assert done.stdout == "AcmeTracker\n", done.stderr
 
 
+@pytest.mark.figures  # beside that of the other guide in test_writing_a_robot_driver.py
 def test_our_own_tests_pass_beside_it(installed: Path) -> None:
     done = registry_beside(installed)
     assert done.returncode == 0, done.stdout + done.stderr

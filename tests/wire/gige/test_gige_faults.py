@@ -29,6 +29,8 @@ from fakes.gentl.build import SOURCES, build_producer
 from fakes.gentl.cameras import ENVIRONMENT, FakeCamera, FakeCameras, Fault, expected_image
 from tests.wire.gige.conftest import LEFT, RIGHT, camera, descriptors
 
+FIGURES = pytest.mark.figures
+"""For the rest of what one branch serves: each takes a process of the maker's library."""
 EM_RISCV, EM_S390 = (number.to_bytes(2, sys.byteorder) for number in (243, 22))
 
 
@@ -175,7 +177,7 @@ async def test_without_a_producer_the_variable_is_named(
         ({"pixel_format": "Mono14"}, "Mono8, Mono12, Mono12Packed, BayerRG8, BayerRG12"),
         ({"features": {"Binning": 2}}, "no feature Binning; it has"),
         *(
-            pytest.param(*one, marks=pytest.mark.figures)
+            pytest.param(*one, marks=FIGURES)
             for one in (
                 ({"exposure_s": 3.0}, "10.0 to 1000000.0"),
                 ({"region": Region(width=20, height=4000)}, "16 to 48"),
@@ -209,8 +211,8 @@ async def test_settings_reach_the_camera(producer: Path, fakes: FakeCameras) -> 
     ("fault", "words"),
     [
         ("incomplete", "packets are missing"),
-        ("truncated", "1536 bytes of buffer, 3072 are needed"),
-        ("stale", "the image before came again"),
+        pytest.param("truncated", "1536 bytes of buffer, 3072 are needed", marks=FIGURES),
+        pytest.param("stale", "the image before came again", marks=FIGURES),
     ],
 )
 async def test_a_damaged_image_is_taken_again_and_counted(
@@ -246,7 +248,7 @@ async def test_a_camera_without_clock_is_not_believed_twice(
     assert np.array_equal(image.pixels, expected_image(2, 64, 48, "Mono8"))
 
 
-@pytest.mark.parametrize("fault", ["incomplete", "drop"])
+@pytest.mark.parametrize("fault", [pytest.param("incomplete", marks=FIGURES), "drop"])
 async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
     producer: Path, fakes: FakeCameras, fault: Fault
 ) -> None:
@@ -312,7 +314,7 @@ async def test_a_short_loss_costs_one_fault(producer: Path, fakes: FakeCameras) 
         await eye.grab()
 
 
-@pytest.mark.parametrize("trigger", ["none", "Line1"])
+@pytest.mark.parametrize("trigger", [pytest.param("none", marks=FIGURES), "Line1"])
 async def test_a_lost_camera_that_nothing_is_sent_to_is_asked_for(
     producer: Path, fakes: FakeCameras, trigger: str
 ) -> None:
@@ -344,7 +346,7 @@ async def test_a_camera_that_is_slow_is_not_lost(producer: Path, fakes: FakeCame
 
 async def test_nothing_is_left_behind(producer: Path, fakes: FakeCameras) -> None:
     before = len(os.listdir("/proc/self/fd"))
-    for _ in range(3):
+    for _ in range(2):
         async with camera(producer) as eye:
             images = [await eye.grab() for _ in range(20)]
             assert fakes.buffers(LEFT) == 4

@@ -35,7 +35,9 @@ def test_it_is_small() -> None:
     assert len(encode_curve(curve(), STARTED, {})) < 75 * 5000
 
 
-@pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
+@pytest.mark.parametrize(
+    "share", [0.6, *(pytest.param(one, marks=pytest.mark.figures) for one in (0.3, 0.95))]
+)
 def test_a_cut_recording_is_read_up_to_the_cut(share: float) -> None:
     original = curve(20_000)
     data = encode_curve(original, STARTED, {})

@@ -73,7 +73,7 @@ def test_message_times_are_those_of_the_wall_clock() -> None:
     assert first == int(STARTED.timestamp() * 1e9)
 
 
-@pytest.mark.parametrize("share", [0.4, 0.9])
+@pytest.mark.parametrize("share", [0.4, pytest.param(0.9, marks=pytest.mark.figures)])
 def test_a_cut_recording_is_read_up_to_the_cut(share: float) -> None:
     data = recording(20)
     content = read_mcap(data[: int(share * len(data))])
