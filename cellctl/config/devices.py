@@ -28,6 +28,11 @@ class DeviceConfig(Section):
     """Name of an installed driver of its kind."""
     simulated: bool = False
     """True for a fake. The devices of a cell are all fakes, or none is."""
+    serial_number: Annotated[str, Field(max_length=100)] = ""
+    """Serial number on its type plate, for the record of a run."""
+    certificate: Annotated[str, Field(max_length=200)] = ""
+    """Number and date of the certificate of its calibration, for the record of a run; a force
+    sensor without one leaves the figures of force untraced."""
     settings: dict[str, Any] = Field(default_factory=dict)
     """Settings, which the driver's own ``Config`` checks."""
 

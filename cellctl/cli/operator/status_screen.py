@@ -41,6 +41,8 @@ _NEXT_IN_IDLE = {
     "MAINTENANCE": "`cellctl procedure NUMBER`; before a part `cellctl mode production`",
     "MANUAL": "`cellctl mode production` or `maintenance`: in Manual nothing is started",
 }
+_NO_RUN = frozenset({"IDLE", "STOPPED", "ABORTED", "COMPLETED", "RESETTING", "CLEARING"})
+"""States in which what was measured is of a run that has ended."""
 _BEGINS = {"PRODUCTION": "start", "MAINTENANCE": "procedure"}
 _CONTROL = {
     "line": "line PLC; here only Stop, Abort, Hold, Clear and alarms",
@@ -148,11 +150,20 @@ def _next(report: StatusReport) -> str:
 def _measured(report: StatusReport) -> list[tuple[str, Text]]:
     """Errors of the pose against their thresholds, and what the force sensors feel."""
     rows = []
+    ended = report.state in _NO_RUN
     if any(axis.value is not None for axis in report.errors):
-        rows.append(("errors", Text(", ").join(_axis(axis) for axis in report.errors)))
+        errors = Text(", ").join(_axis(axis) for axis in report.errors)
+        rows.append(("errors", Text(_of_run(report), style="dim") + errors if ended else errors))
     for force in report.forces:
-        rows.append((f"at {force.sensor}" if len(report.forces) > 1 else "force", _force(force)))
+        name = f"at {force.sensor}" if len(report.forces) > 1 else "force"
+        rows.append((name, _force(force, limited=not ended)))
     return rows
+
+
+def _of_run(report: StatusReport) -> str:
+    """Says of figures that nothing of them is of now."""
+    run = "the last run" if report.last_run is None else f"run {report.last_run.number}"
+    return f"of {run}, which has ended, part against target: "
 
 
 def _axis(axis: AxisReport) -> Text:
@@ -164,7 +175,8 @@ def _axis(axis: AxisReport) -> Text:
     return Text(f"{axis.axis} {axis.value:.4f}{limit} {axis.unit}", style=colour)
 
 
-def _force(force: ForceReport) -> Text:
+def _force(force: ForceReport, *, limited: bool) -> Text:
+    """``limited``: a run is under way, whose limit counts."""
     if force.age_s is None:
         return Text("no sample", style="red")
     if force.stale:
@@ -177,7 +189,9 @@ def _force(force: ForceReport) -> Text:
     if not felt:
         # After a free move: the signs of the sensor's axes say nothing of the part.
         felt = "in the axes of the sensor; shown in those of the part from the next tare on"
-    return Text(felt + (f"; limit {force.limit_n:g} N" if force.limit_n is not None else ""))
+    if limited and force.limit_n is not None:
+        felt += f"; limit {force.limit_n:g} N"
+    return Text(felt)
 
 
 def _links(report: StatusReport) -> Text:

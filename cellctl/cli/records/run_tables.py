@@ -1,7 +1,8 @@
 """Runs as people and programs read them on a terminal: lists, and one run in figures."""
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import asdict
+from typing import Any
 
 import typer
 from rich.table import Table
@@ -16,6 +17,7 @@ from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead
 from cellctl.records.figures import NO_LIMIT, verdicts
 from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.acceptance.faults import fault_box
+from cellctl.records.report.acceptance.runs_before import RunBefore, words_of_runs_before
 from cellctl.records.report.acceptance.table import limit_text
 from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
@@ -26,12 +28,22 @@ _VERDICTS = {str(Verdict.PASS): "green", str(Verdict.FAIL): "red"}
 _COLOURS = {"open": "yellow", **dict.fromkeys(GOOD_ENDS, "green")}
 
 
-def show_record(record: RunRecord, audit: Sequence[AuditEntry], *, as_json: bool) -> None:
-    """One run in figures; ``audit``: of the store that holds it."""
+def show_record(
+    record: RunRecord,
+    audit: Sequence[AuditEntry],
+    before: Sequence[RunBefore] | None = None,
+    *,
+    as_json: bool,
+) -> None:
+    """One run in figures; ``audit``: of the store that holds it; ``before``: earlier runs of its
+    part, None where nobody has looked for them."""
     number = record.head.number
     notes, entered = notes_of(number, audit), gauge_entries(number, audit)
     if as_json:
-        typer.echo(as_plain(asdict(record) | {"notes": [asdict(note) for note in notes]}))
+        looked_up = {} if before is None else {"runs_before": before}
+        beside: Mapping[str, Sequence[Any]] = {"notes": notes, **looked_up}
+        plain = {name: [asdict(one) for one in some] for name, some in beside.items()}
+        typer.echo(as_plain(asdict(record) | plain))
         return
     console = console_of_tables()
     console.print(run_table([record.head], wide=console.width >= WIDE))
@@ -48,10 +60,16 @@ def show_record(record: RunRecord, audit: Sequence[AuditEntry], *, as_json: bool
         console.print(gauge_line(record, gauge, entered))
     if part_verdict(record) != record.head.result:
         console.print("the part is bad: a plug gauge is beyond its limit", style="bold red")
-    for alarm in record.alarms:
-        console.print(f"alarm {alarm.text}")
-    for entry in notes:
-        console.print(f"note of {said_by(entry)}: {note_words(entry)}")
+    for line in _said(record, before or (), notes):
+        console.print(line)
+
+
+def _said(
+    record: RunRecord, before: Sequence[RunBefore], notes: Sequence[AuditEntry]
+) -> Iterator[str]:
+    yield from (f"alarm {alarm.text}" for alarm in record.alarms)
+    yield from (f"this part before: {said}" for said in words_of_runs_before(before))
+    yield from (f"note of {said_by(entry)}: {note_words(entry)}" for entry in notes)
 
 
 def gauge_line(record: RunRecord, entry: Gauge, entered: Sequence[AuditEntry]) -> str:

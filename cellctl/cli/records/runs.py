@@ -29,6 +29,7 @@ from cellctl.cli.records.run_store import DataDir, opened_store, store_folder
 from cellctl.cli.records.run_tables import WIDE, gauge_line, run_table, show_record
 from cellctl.cli.records.trend import trend
 from cellctl.records.entered.said_by import BY, ENTERED, GAUGE, gauge_entries
+from cellctl.records.report.acceptance.runs_before import runs_before
 from cellctl.records.run_list import listed_runs
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
@@ -82,8 +83,8 @@ def show(run: Run, data_dir: DataDir = None, *, as_json: AsJson = False) -> None
     """One run in figures."""
     with opened_store(data_dir) as store:
         record = store.run(run)
-        audit = store.audit_log()
-    show_record(record, audit, as_json=as_json)
+        audit, before = store.audit_log(), runs_before(store, record.head)
+    show_record(record, audit, before, as_json=as_json)
 
 
 @app.command()

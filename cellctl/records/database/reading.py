@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from datetime import datetime
 from typing import Any, TypeVar
 
-from sqlalchemy import func, select
+from sqlalchemy import func, or_, select
 from sqlalchemy.orm import Session
 
 from cellctl.errors.records import ArtefactDamaged
@@ -74,6 +74,22 @@ def run_heads(
         joined = select(DocumentRow.run).where(DocumentRow.key == PARTS, named)
         query = query.where(RunRow.number.in_(joined))
     return [to_entry(row, RunHead) for row in session.scalars(query)]
+
+
+def last_phase(session: Session, number: int) -> Phase | None:
+    """The phase that a run began last."""
+    query = select(PhaseRow).where(PhaseRow.run == number).order_by(PhaseRow.id.desc())
+    row = session.scalars(query.limit(1)).first()
+    return None if row is None else to_entry(row, Phase)
+
+
+def cell_alarms(session: Session, begin: datetime, end: datetime | None) -> list[Alarm]:
+    """Alarms of no run that came or stood in a stretch of time, oldest first."""
+    standing = or_(AlarmRow.acknowledged.is_(None), AlarmRow.acknowledged >= begin)
+    query = select(AlarmRow).where(AlarmRow.run.is_(None), standing).order_by(AlarmRow.id)
+    if end is not None:
+        query = query.where(AlarmRow.time <= end)
+    return [to_entry(row, Alarm) for row in session.scalars(query)]
 
 
 def good_parts(session: Session) -> int:

@@ -4,7 +4,7 @@ from datetime import datetime
 
 from cellctl.records.database import reading, rows, schema
 from cellctl.records.database.sessions import Database
-from cellctl.records.entries import Alarm, AuditEntry, Calibration, RunHead, RunRecord
+from cellctl.records.entries import Alarm, AuditEntry, Calibration, Phase, RunHead, RunRecord
 from cellctl.records.trend import Sample
 
 LINE_SEQ = "line_seq"
@@ -70,3 +70,13 @@ class StoredRecords:
         """One run with everything; raises ``RunUnknown``."""
         with self._database.read() as session:
             return reading.read_run(session, number)
+
+    def cell_alarms(self, begin: datetime, end: datetime | None) -> list[Alarm]:
+        """Alarms of no run, such as a lost line, that came or stood from ``begin`` to ``end``."""
+        with self._database.read() as session:
+            return reading.cell_alarms(session, begin, end)
+
+    def last_phase(self, run: int) -> Phase | None:
+        """The phase that a run began last; None where it has begun none."""
+        with self._database.read() as session:
+            return reading.last_phase(session, run)

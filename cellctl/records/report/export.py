@@ -15,6 +15,7 @@ from cellctl.records.entered.gauges import part_verdict
 from cellctl.records.entered.notes import notes_of
 from cellctl.records.entries import RunRecord
 from cellctl.records.files.artefacts import CELL_FILE
+from cellctl.records.report.acceptance.runs_before import runs_before
 from cellctl.records.report.pdf import to_pdf
 from cellctl.records.report.render import render
 from cellctl.records.report.sections import ReportBuilder, no_pages
@@ -55,7 +56,12 @@ def export_run(
     view = _view(store, record, pages, addresses)
     _write(folder / REPORT, render(view).encode())
     notes = [asdict(note) for note in notes_of(number, store.audit_log())]
-    plain = {**document(record), "notes": notes, "ledger_head": str(view.ledger_head)}
+    plain = {
+        **document(record),
+        "notes": notes,
+        "runs_before": [asdict(one) for one in runs_before(store, record.head)],
+        "ledger_head": str(view.ledger_head),
+    }
     _write(folder / RECORD, (json.dumps(plain, indent=1, default=_plain) + "\n").encode())
     return folder / REPORT
 
@@ -104,6 +110,8 @@ def _sources(store: RunStore, record: RunRecord, addresses: Mapping[str, str]) -
         ledger_head=store.ledger_head(),
         cell=json.loads(store.artefacts.get(cells[-1].sha256)) if cells else {},
         addresses=addresses,
+        before=runs_before(store, record.head),
+        cell_alarms=store.cell_alarms(record.head.started, record.head.ended),
     )
 
 

@@ -14,6 +14,7 @@ from cellctl.records.entries import (
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.looks import RIMS, TAKEN
 from cellctl.records.parts import PARTS
+from cellctl.records.report.acceptance.devices import TOLD
 from cellctl.records.report.sections import (
     FactList,
     Heading,
@@ -41,7 +42,7 @@ from cellctl.records.units import words
 
 REPLAY_INPUT = ".input"
 """Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
-_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES, TAKEN, RIMS})
+_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES, TAKEN, RIMS, TOLD})
 FIT = "fit"
 """Entry of a pose's detail, with what ``_fit_row`` shows."""
 _MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}

@@ -10,6 +10,7 @@ from cellctl.records.entered.said_by import gauge_entries
 from cellctl.records.entries import (
     DRY_RUN,
     PRODUCTION,
+    Alarm,
     AuditEntry,
     Calibration,
     Figure,
@@ -18,13 +19,15 @@ from cellctl.records.entries import (
     Verdict,
 )
 from cellctl.records.report import run_sections
+from cellctl.records.report.acceptance.devices import TOLD, devices
 from cellctl.records.report.acceptance.faults import (
     AlarmLine,
     FaultBox,
     alarm_lines,
     fault_box,
 )
-from cellctl.records.report.acceptance.identification import devices, identification
+from cellctl.records.report.acceptance.identification import identification
+from cellctl.records.report.acceptance.runs_before import RunBefore
 from cellctl.records.report.acceptance.table import acceptance
 from cellctl.records.report.acceptance.timeline import during, timeline
 from cellctl.records.report.calibration_view import (
@@ -66,6 +69,10 @@ class ReportSources:
     """The cell file that the run was made with; empty where the run has none."""
     addresses: Mapping[str, str]
     """Addresses of the pictures, by the names of their files."""
+    before: Sequence[RunBefore] = ()
+    """Earlier runs of the same part."""
+    cell_alarms: Sequence[Alarm] = ()
+    """Alarms of no run that came or stood while this one lasted."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,15 +116,15 @@ def build_view(record: RunRecord, pages: ProcessPages, sources: ReportSources) -
         fault=fault_box(record, audit),
         tiles=pages.tiles or _tiles(record),
         before_signatures=_filled(
-            identification(record.head, pages.parts, audit, notes),
+            identification(record.head, pages.parts, audit, notes, sources.before),
             acceptance(record, pages.acceptance),
         ),
-        after_signatures=_filled(timeline(record, audit, notes, gauges)),
+        after_signatures=_filled(timeline(record, audit, notes, gauges, sources.cell_alarms)),
         calibrations=tuple(calibration_lines(record.head.calibration_ids, stored)),
         heads=tuple(head_lines(used)),
         poses=tuple(pose_lines(used)),
         after_calibration=_filled(
-            devices(sources.cell),
+            devices(sources.cell, record.document(TOLD)),
             run_sections.poses(record, pages.tabulated),
             run_sections.fits(record),
             *pages.sections,

@@ -20,6 +20,7 @@ from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
 from cellctl.runtime.jobs.provenance import cell_artefact, provenance
+from cellctl.runtime.jobs.told_devices import told_devices
 from cellctl.version import software
 
 _log = log.get(__name__)
@@ -145,6 +146,7 @@ class JobRecord:
         )
         for artefact in made_with.artefacts():
             await self.store.do(RunStore.add_artefact, self.number, *artefact)
+        await self.store.do(RunStore.add, self.number, told_devices(cell))
         if self._command.mate_serial:
             named = Document(PARTS, {MATE_SERIAL: self._command.mate_serial})
             await self.store.do(RunStore.add, self.number, named)
@@ -162,6 +164,7 @@ class JobRecord:
             calibration_ids={},
         )
         await self.store.do(RunStore.add_artefact, self.number, *cell_file)
+        await self.store.do(RunStore.add, self.number, told_devices(self._cell))
 
     async def _start(self, **made_with: Any) -> None:
         """Write the row with what it was made with, and who commanded it.

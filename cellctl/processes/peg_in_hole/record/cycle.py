@@ -14,6 +14,8 @@ from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.run import PegRun
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
 from cellctl.processes.peg_in_hole.search.probe import SearchTrace
+from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
+from cellctl.processes.peg_in_hole.verdict.judgement import SLIP
 from cellctl.records.entries import Figure
 from cellctl.records.figures import Limit, figure
 from cellctl.records.run_recorder import RunRecorder
@@ -34,7 +36,8 @@ async def record_search(recorder: RunRecorder, log: CycleLog) -> None:
     await recorder.document(keys.TRACE, trace_record(log.trace, log.contacts))
     await recorder.document(keys.MAP, map_record(log.hole_map))
     points = log.trace.points
-    searched_s = points[-1].time_s - points[0].time_s if points else 0.0
+    # Of a search that was ended before it touched nobody knows: it was not done in 0 s.
+    searched_s = points[-1].time_s - points[0].time_s if points else None
     await recorder.figures(
         [
             figure(keys.SEARCH_TIME, searched_s, "s"),
@@ -56,15 +59,26 @@ async def record_cycle(run: PegRun, result: CycleResult) -> None:
     await run.recorder.figures(
         [
             figure(keys.PEAK, result.fed.greatest_force_n, "N", limit=Limit(upper=most_n)),
-            *(_figure(check) for check in result.judgement.checks),
+            *(_figure(check, result.evidence) for check in result.judgement.checks),
         ]
     )
 
 
-def _figure(check: LimitCheck) -> Figure:
+def _figure(check: LimitCheck, evidence: InsertionEvidence) -> Figure:
     limit = Limit(upper=check.limit) if check.side == "max" else Limit(lower=check.limit)
     value = check.value if isfinite(check.value) else None
-    return figure(keys.check(check.name), value, check.unit, limit=limit)
+    return figure(
+        keys.check(check.name), value, check.unit, label=_label(check, evidence), limit=limit
+    )
+
+
+def _label(check: LimitCheck, evidence: InsertionEvidence) -> str:
+    """Words of the key; a ratio names the forces, of which no other figure has the greatest."""
+    words = f"verdict: {check.name}"
+    greatest_n, grip_n = evidence.greatest_force_n, evidence.grip_force_n
+    if check.name != SLIP or greatest_n is None or grip_n is None:
+        return words
+    return f"{words}, {greatest_n:.4g} N of {grip_n:.4g} N"
 
 
 def trace_record(trace: SearchTrace, contacts: Contacts) -> dict[str, object]:

@@ -79,7 +79,7 @@ def insertion_picture(
     """Force along the axis and across it, moment, and nearness of a jam, over depth. SVG.
 
     ``limit_n``: of the insertion; None where the record does not say. ``jam`` (n,): ratio of each
-    tick, 1 on the border, NaN where it cannot be told.
+    tick, 1 on the border, NaN where it cannot be told or decides nothing.
     """
     with style():
         rows, heights = (2, (2, 1)) if jam is None else (3, (2, 1, 1))

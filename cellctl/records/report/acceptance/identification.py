@@ -1,28 +1,18 @@
 """What an acceptance record is about: which parts, made by whom, on which order, in which
 surroundings."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from cellctl.records.entered.notes import SURROUNDINGS, remark_of, surroundings
 from cellctl.records.entered.said_by import said_by
 from cellctl.records.entries import AuditEntry, RunHead
-from cellctl.records.report.sections import (
-    FactList,
-    Part,
-    ReportSection,
-    ReportTable,
-    TableCell,
-    TableRow,
-)
-from cellctl.records.report.text import MISSING, duration, number, when, with_unit
-from cellctl.records.units import words
+from cellctl.records.report.acceptance.runs_before import RunBefore, words_of_runs_before
+from cellctl.records.report.sections import FactList, Part, ReportSection
+from cellctl.records.report.text import duration, number, when, with_unit
 
 UNKNOWN = "not recorded"
 SIGNATURES = ("performed by", "inspected by", "accepted by")
 """Who signs a report by hand."""
-_MEASURING = ("robots", "stereo_cameras", "cameras", "trackers", "force_sensors")
-"""Tables of the cell file whose devices have a share in what is measured."""
 
 
 def identification(
@@ -30,10 +20,12 @@ def identification(
     parts: Sequence[Part],
     audit: Sequence[AuditEntry],
     notes: Sequence[AuditEntry],
+    before: Sequence[RunBefore],
 ) -> ReportSection:
     """Parts, order, people, recipe and surroundings; what nobody has recorded says so.
 
-    ``audit`` is that of the run's time, ``notes`` are those on the run.
+    ``audit`` is that of the run's time, ``notes`` are those on the run, ``before`` are earlier runs
+    of its part.
     """
     named = parts or (Part("part", head.serial),)
     started = next((entry.actor for entry in audit if entry.action == "start"), UNKNOWN)
@@ -51,6 +43,7 @@ def identification(
         ("devices", "simulated" if head.simulated else "real"),
         ("software", head.software),
         *_surroundings(notes),
+        *(("this part before", said) for said in words_of_runs_before(before)),
         *_remarks(notes),
     )
     return ReportSection("Identification", (FactList(facts),))
@@ -73,22 +66,3 @@ def _remarks(notes: Sequence[AuditEntry]) -> Iterator[tuple[str, str]]:
     for entry in notes:
         if said := remark_of(entry):
             yield "remark", f"{said} ({said_by(entry)}, {when(entry.time)})"
-
-
-def devices(cell: Mapping[str, Any]) -> ReportSection:
-    """Robots and measuring devices of the cell file that the run was made with."""
-    rows = tuple(
-        TableRow(tuple(TableCell(text) for text in _device(kind, name, device)))
-        for kind in _MEASURING
-        for name, device in cell.get(kind, {}).items()
-    )
-    columns = ("name", "kind", "driver", "connection")
-    table = ReportTable(columns, rows, numbers=False)
-    return ReportSection("Devices", (table,) if rows else ())
-
-
-def _device(kind: str, name: str, device: Mapping[str, Any]) -> tuple[str, ...]:
-    settings = device.get("settings", {})
-    address = ":".join(str(settings[key]) for key in ("host", "port") if key in settings)
-    kind_words = words(kind).removesuffix("s")
-    return name, kind_words, str(device.get("driver", MISSING)), address or MISSING

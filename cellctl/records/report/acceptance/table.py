@@ -25,6 +25,7 @@ from cellctl.records.report.text import MISSING, fixed, quantity, with_unit
 
 TITLE = "Acceptance"
 _COLUMNS = ("requirement", "measured", "U", "required", "accepted", "verdict", "found in")
+NOT_STATED = "not stated"
 _LEGEND = (
     f"U: expanded uncertainty, coverage factor k = {COVERAGE_FACTOR:g}, level of confidence about "
     "95 % (JCGM 100): the value is known to ± U. In the other tables of this report u is a "
@@ -32,8 +33,10 @@ _LEGEND = (
     "row has an accepted range, it is the required one less U, and the measured value must lie in "
     "it (JCGM 106, guarded acceptance). "
     "A row without an accepted range is judged by the required one alone, and not decided where "
-    "its value lies within that by less than U (ISO 14253-1). A dash as U means that no "
-    "uncertainty was evaluated. Plug gauges are optional and entered by hand after a run; one that "
+    "its value lies within that by less than U (ISO 14253-1). "
+    f"Where U is {NOT_STATED}, none was evaluated: the value as measured is compared with the "
+    "limit (JCGM 106, 8.2, simple acceptance), and the verdict does not say how likely the true "
+    "value lies beyond it. Plug gauges are optional and entered by hand after a run; one that "
     "does not conform makes the part a bad one."
 )
 _VERDICTS = {
@@ -72,13 +75,20 @@ def _rows(group: RequirementGroup, phases: Mapping[int, str]) -> Iterator[TableR
         texts = (
             entry.title,
             _rounded(entry.value, unit, places),
-            _rounded(entry.expanded, unit, places),
+            _uncertainty(entry, places),
             limit_text(entry.required, unit),
             limit_text(entry.accepted, unit, places),
             verdict,
             phases.get(entry.phase or 0, MISSING),
         )
         yield TableRow(tuple(TableCell(text) for text in texts), mark)
+
+
+def _uncertainty(entry: Requirement, places: int | None) -> str:
+    """In the table; a dash where there is no value that it could be of."""
+    if entry.expanded is None and entry.value is not None and entry.verdict is not None:
+        return NOT_STATED
+    return _rounded(entry.expanded, entry.unit, places)
 
 
 def _places(expanded: float | None) -> int | None:

@@ -6,7 +6,7 @@ from typing import Any
 
 from cellctl.records.entered.notes import NOTE, note_words
 from cellctl.records.entered.said_by import BY, GAUGE, measured_by, said_by
-from cellctl.records.entries import AuditEntry, RunRecord
+from cellctl.records.entries import Alarm, AuditEntry, RunRecord
 from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
 from cellctl.records.report.text import MISSING, duration, facts, fixed, when
 
@@ -37,10 +37,13 @@ def timeline(
     audit: Sequence[AuditEntry],
     notes: Sequence[AuditEntry] = (),
     gauges: Sequence[AuditEntry] = (),
+    cell_alarms: Sequence[Alarm] = (),
 ) -> ReportSection:
     """Commands, steps, alarms, gauges and notes as one table; ``audit`` is that of the run's time,
-    ``notes`` and ``gauges`` are those on the run, also later ones."""
-    events = sorted(_events(record, audit, notes, gauges), key=lambda event: event[0])
+    ``notes`` and ``gauges`` are those on the run, also later ones, ``cell_alarms`` are of no run
+    and came or stood in its time."""
+    found = (*_events(record, audit, notes, gauges), *_of_the_cell(record, cell_alarms))
+    events = sorted(found, key=lambda event: event[0])
     rows = tuple(
         TableRow((TableCell(when(time)), TableCell(what), TableCell(who or MISSING)))
         for time, what, who in events
@@ -78,6 +81,18 @@ def _events(
     for gauge in record.gauge_history:
         what = f"plug gauge {gauge.gauge_id or ''} through {gauge.hole}: "
         yield gauge.time, f"{what}{fixed(gauge.diameter_mm, 2)} mm", measured_by(gauge, gauges)
+
+
+def _of_the_cell(record: RunRecord, alarms: Sequence[Alarm]) -> Iterator[Event]:
+    """Alarms that belong to no run, such as a lost line, in their order with those of the run."""
+    begin, end = record.head.started, record.head.ended
+    for alarm in alarms:
+        stood = ", not acknowledged when the run began" if alarm.time < begin else ""
+        yield alarm.time, f"alarm {alarm.text} (of the cell{stood})", _CELL
+        ended = alarm.acknowledged
+        if ended is not None and begin <= ended and (end is None or ended <= end):
+            what = f"alarm F{alarm.number:03d} acknowledged"
+            yield ended, what, alarm.acknowledged_by or ""
 
 
 def _details(detail: Mapping[str, Any]) -> str:

@@ -86,7 +86,7 @@ def test_figures_that_no_process_names_follow_and_a_bad_one_says_so(store: RunSt
     )
     record = store.run(run)
     rows = rows_of(record)
-    assert ("force", "61 N", "–", "≤ 50 N", "–", "✗ does not conform", "–") in rows
+    assert ("force", "61 N", "not stated", "≤ 50 N", "–", "✗ does not conform", "–") in rows
     assert ("depth", "–", "–", "2.35 to 2.65 mm", "–", "✗ not measured", "–") in rows
     assert not any("speed" in row[0] for row in rows)
     table = acceptance(record, ()).blocks[0]
