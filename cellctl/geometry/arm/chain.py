@@ -52,6 +52,10 @@ class ArmChain:
         """Pose of the flange at joints of shape (6,)."""
         return RigidTransform.from_matrix(self.link_frames(joints_rad)[6])
 
+    def flange_m(self, joints_rad: Array) -> Array:
+        """Place of the flange alone, shape (3,): a transform takes far longer to make."""
+        return np.asarray(self.link_frames(joints_rad)[6, :3, 3])
+
     @property
     def length_m(self) -> float:
         """Length of all links one after another: no flange is farther from its base."""

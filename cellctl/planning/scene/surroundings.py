@@ -67,7 +67,7 @@ class Surroundings:
     def refusal(self, joints_rad: Array) -> str | None:
         """Why the arm would not be let there at joints of shape (6,), by its driver or the arbiter
         of the zones; None when it would."""
-        flange_m = self.arm.base_T_flange(joints_rad).translation
+        flange_m = self.arm.chain.flange_m(joints_rad)
         for zone, box in self._closed.items():
             if box.holds(flange_m):
                 return f"its flange comes into zone {zone}, in which another arm stands"

@@ -131,7 +131,7 @@ def _bodies(scene: CellScene, robot: str) -> frozenset[Solid]:
 
 
 def _stop(pair: _Pair, robot: str, label: str, at_rad: Array, bodies: frozenset[Solid]) -> _Stop:
-    flange_m = pair.scene.arms[robot].base_T_flange(at_rad).translation
+    flange_m = pair.scene.arms[robot].chain.flange_m(at_rad)
     zones = frozenset(zone.name for zone in pair.zones if zone.shares[robot].box.holds(flange_m))
     place = ", ".join(f"{value / MM:.0f}" for value in flange_m)
     return _Stop(f"{label}, flange at ({place}) mm of its base", at_rad, zones, bodies)
@@ -141,7 +141,7 @@ def _is_beside(pair: _Pair, move: StatedMove) -> bool:
     """Whether the outer arm moves while the inner one stands in a zone, as the process means it."""
     arm = pair.scene.arms[pair.inner]
     return move.robot == pair.outer and any(
-        zone.shares[pair.inner].box.holds(arm.base_T_flange(joints_at(arm, place)).translation)
+        zone.shares[pair.inner].box.holds(arm.chain.flange_m(joints_at(arm, place)))
         for zone in pair.zones
         for place in move.others.get(pair.inner, ())
     )

@@ -1,12 +1,15 @@
 """A move as joints in small steps: what the controller will do between its two ends."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
 from cellctl.config.via_points import via_points
 from cellctl.errors.config import PlaceUnreachable
+from cellctl.geometry.arm.chain import ArmChain
 from cellctl.geometry.arm.linear_way import BrokenWay, WaySteps, linear_joint_way
 from cellctl.geometry.arm.reaching import joints_reaching
 from cellctl.geometry.pose import Array, pose_to_xyzabc
@@ -48,7 +51,19 @@ def _linear(arm: PlannedArm, move: StatedMove, start_rad: Array) -> Array:
     if end is None:
         # A place that is taught by joints: the line goes to where these put the flange.
         end = arm.base_T_flange(move.end.joints_rad)
-    way = linear_joint_way(arm.chain, start_rad, end, _STEPS)
+    way = _line(arm.chain, start_rad.tobytes(), end.as_matrix().tobytes())
     if isinstance(way, BrokenWay):
         raise PlaceUnreachable(f"{move.name}: {way.why} {way.share:.0%} of the way")
+    return way
+
+
+# The moves of a cell are looked at one by one, and once more for each pair of arms that share a
+# zone. To follow a line takes longer than to measure the gaps beside it.
+@lru_cache(maxsize=2048)
+def _line(chain: ArmChain, start_rad: bytes, end: bytes) -> Array | BrokenWay:
+    """The joints on a straight way, between numbers as bytes: shapes (6,) and (4, 4)."""
+    target = RigidTransform.from_matrix(np.frombuffer(end).reshape(4, 4))
+    way = linear_joint_way(chain, np.frombuffer(start_rad), target, _STEPS)
+    if not isinstance(way, BrokenWay):
+        way.setflags(write=False)
     return way

@@ -138,17 +138,22 @@ def _vote(shape: tuple[int, ...], edges: tuple[Image32, Image32], radii: Array) 
     """Support in [0, ~1] for a centre at each pixel and radius, shape (len(radii), h, w)."""
     positions, inward = edges
     height, width = shape
-    votes = np.zeros((len(radii), height, width), dtype=np.float32)
+    votes = np.empty((len(radii), height, width), dtype=np.float32)
+    # Few pixels of an image are voted for. At full scale there are millions of them, so that each
+    # pass over all, and each new array, would take longer than the votes.
+    counts = np.zeros(height * width, dtype=np.uint16)
     for index, radius in enumerate(radii):
-        centres = np.rint(positions + inward * radius).astype(np.int32)
+        centres = np.rint(positions + inward * radius).astype(np.intp)
         inside = (centres >= 0).all(axis=1) & (centres[:, 0] < width) & (centres[:, 1] < height)
         flat = centres[inside, 1] * width + centres[inside, 0]
-        counts = np.bincount(flat, minlength=height * width).reshape(height, width)
+        np.add.at(counts, flat, np.uint16(1))
         # Rounding and the noise of the gradient's direction scatter the votes of one circle over
         # neighbouring pixels.
-        gathered = cv2.boxFilter(counts.astype(np.uint16), cv2.CV_32F, (3, 3), normalize=False)
+        image = counts.reshape(height, width)
+        cv2.boxFilter(image, cv2.CV_32F, (3, 3), dst=votes[index], normalize=False)
+        counts[flat] = 0
         # An edge is about two pixels wide, so a full circle gathers some 4 π r votes.
-        votes[index] = gathered / (4.0 * np.pi * radius)
+        votes[index] /= np.float32(4.0 * np.pi * radius)
     return votes
 
 

@@ -1,5 +1,7 @@
 """A camera on a flange that looks at a board, with known truth."""
 
+from functools import cache
+
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
@@ -49,6 +51,11 @@ def disturbed(rng: np.random.Generator, base_T_flange: RigidTransform) -> RigidT
 
 def make_poses(seed: int, setup: Setup, count: int = 20) -> list[HandEyePose]:
     """X = FLANGE_T_CAMERA and Z = BASE_T_BOARD, or X = BASE_T_CAMERA and Z = FLANGE_T_BOARD."""
+    return list(_poses(seed, setup, count))
+
+
+@cache
+def _poses(seed: int, setup: Setup, count: int) -> tuple[HandEyePose, ...]:
     rng = np.random.default_rng(seed)
     poses = []
     for number in range(count):
@@ -60,4 +67,4 @@ def make_poses(seed: int, setup: Setup, count: int = 20) -> list[HandEyePose]:
         pixels = project(CAMERA, seen.apply(BOARD_M)) + rng.normal(0, SIGMA_PX, (88, 2))
         measured, _ = board_in_camera(CAMERA, BOARD_M, pixels, SIGMA_PX)
         poses.append(HandEyePose(f"pose {number}", disturbed(rng, base_T_flange), measured))
-    return poses
+    return tuple(poses)

@@ -103,9 +103,9 @@ def render(
 ) -> Image:
     """One 8 bit image of the plate, noise included."""
     width, height = size
-    columns, rows = np.meshgrid(np.arange(width), np.arange(height))
     shade = light.gradient_per_px / 100.0 * light.plate
-    image = light.plate + shade * (columns - width / 2) + 0.4 * shade * (rows - height / 2)
+    across, down = np.arange(width) - width / 2, 0.4 * (np.arange(height) - height / 2)
+    image = light.plate + shade * (across + down[:, None])
     if any(hole.kind == "disc" for hole in holes):
         image[:] = light.dark
     for hole in holes:
@@ -115,8 +115,10 @@ def render(
         fine = cv2.resize(rough, (width, height), interpolation=cv2.INTER_LINEAR)
         image += fine * light.texture * 1.5
     half = light.noise**2 / 2
-    sigma = np.sqrt(half + half * np.clip(image, 0, None) / light.plate)
-    noisy = image + sigma * rng.standard_normal(image.shape, dtype=np.float32)
+    # In single precision, which takes half the time and leaves grey levels as they are.
+    clean = image.astype(np.float32)
+    sigma = np.sqrt(half + np.float32(half / light.plate) * np.maximum(clean, 0))
+    noisy = clean + sigma * rng.standard_normal(image.shape, dtype=np.float32)
     return np.clip(np.round(noisy), 0, 255).astype(np.uint8)
 
 

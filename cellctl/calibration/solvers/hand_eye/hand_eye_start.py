@@ -6,7 +6,6 @@ A = turn_j^-1 · turn_i and B = camera_T_board_j · camera_T_board_i^-1.
 """
 
 from collections.abc import Sequence
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,8 +37,7 @@ def closed_form(
     if len(turns) < MIN_POSES:
         raise PosesNotDiverse(f"{len(turns)} poses, at least {MIN_POSES} needed")
     robot, camera = _motions(turns, camera_T_board)
-    alpha = np.stack([motion.rotation.as_rotvec() for motion in robot])
-    beta = np.stack([motion.rotation.as_rotvec() for motion in camera])
+    alpha, beta = robot.rotation.as_rotvec(), camera.rotation.as_rotvec()
     angles = np.linalg.norm(alpha, axis=1)
     # A rotation has the same angle in every frame, so robot and camera must agree on it.
     off = float(np.median(np.abs(angles - np.linalg.norm(beta, axis=1))))
@@ -56,17 +54,14 @@ def closed_form(
     # Longer rotation vectors weigh more in this fit, as they should: their direction is better
     # known.
     rotation, _ = Rotation.align_vectors(alpha, beta)
-    matrices = np.concatenate([motion.rotation.as_matrix() - np.eye(3) for motion in robot])
-    knowns = np.concatenate(
-        [rotation.apply(b.translation) - a.translation for a, b in zip(robot, camera, strict=True)]
-    )
-    translation = np.linalg.lstsq(matrices, knowns, rcond=None)[0]
+    matrices = robot.rotation.as_matrix() - np.eye(3)
+    knowns = rotation.apply(camera.translation) - robot.translation
+    translation = np.linalg.lstsq(matrices.reshape(-1, 3), knowns.ravel(), rcond=None)[0]
     x = RigidTransform.from_components(translation, rotation)
-    z = [turn * x * pose for turn, pose in zip(turns, camera_T_board, strict=True)]
-    mean_rotation = Rotation.concatenate([pose.rotation for pose in z]).mean()
+    z = RigidTransform.concatenate(turns) * x * RigidTransform.concatenate(camera_T_board)
     # The median: a gross error among the poses must not pull the start.
-    mean_translation = np.median([pose.translation for pose in z], axis=0)
-    return x, RigidTransform.from_components(mean_translation, mean_rotation), spread
+    mean_translation = np.median(z.translation, axis=0)
+    return x, RigidTransform.from_components(mean_translation, z.rotation.mean()), spread
 
 
 def board_scale(poses: Sequence[HandEyePose], setup: Setup) -> tuple[float, float]:
@@ -76,14 +71,13 @@ def board_scale(poses: Sequence[HandEyePose], setup: Setup) -> tuple[float, floa
     """
     turns = [setup.turn(pose.base_T_flange) for pose in poses]
     robot, camera = _motions(turns, [pose.camera_T_board.pose for pose in poses])
-    alpha = np.stack([motion.rotation.as_rotvec() for motion in robot])
-    beta = np.stack([motion.rotation.as_rotvec() for motion in camera])
+    alpha, beta = robot.rotation.as_rotvec(), camera.rotation.as_rotvec()
     rotation, _ = Rotation.align_vectors(alpha, beta)
-    matrices = np.stack([motion.rotation.as_matrix() - np.eye(3) for motion in robot])
-    seen = np.stack([rotation.apply(motion.translation) for motion in camera])
+    matrices = robot.rotation.as_matrix() - np.eye(3)
+    seen = rotation.apply(camera.translation)
     # (R_A - 1) t = s R t_B - t_A, with the scale s as a fourth unknown.
     design = np.concatenate([matrices, -seen[:, :, None]], axis=2).reshape(-1, 4)
-    knowns = -np.concatenate([motion.translation for motion in robot])
+    knowns = -robot.translation.ravel()
     solution, *_ = np.linalg.lstsq(design, knowns, rcond=None)
     left = knowns - design @ solution
     # Pairs of poses are no independent measurements: as many as there are poses are.
@@ -102,11 +96,12 @@ def turns_agree(
     Shape (poses,).
     """
     count = len(turns)
+    robot, camera = _between_all(turns, camera_T_board)
     off = np.zeros((count, count))
-    for i, j in combinations(range(count), 2):
-        robot = (turns[j].inv() * turns[i]).rotation.magnitude()
-        camera = (camera_T_board[j] * camera_T_board[i].inv()).rotation.magnitude()
-        off[i, j] = off[j, i] = abs(robot - camera)
+    off[np.triu_indices(count, 1)] = np.abs(
+        robot.rotation.magnitude() - camera.rotation.magnitude()
+    )
+    off += off.T
     # Each is compared with itself, too, and agrees: with few poses that must not decide.
     others = (off <= _MAX_ANGLE_DIFFERENCE_RAD).sum(axis=1) - 1
     return np.asarray(others >= (count - 1) / 2)
@@ -114,15 +109,23 @@ def turns_agree(
 
 def _motions(
     turns: Sequence[RigidTransform], camera_T_board: Sequence[RigidTransform]
-) -> tuple[list[RigidTransform], list[RigidTransform]]:
+) -> tuple[RigidTransform, RigidTransform]:
     """A and B for all pairs of poses that turn enough, but not by nearly half a turn."""
-    robot, camera = [], []
-    for i, j in combinations(range(len(turns)), 2):
-        a = turns[j].inv() * turns[i]
-        if _MIN_TURN_RAD <= a.rotation.magnitude() <= _MAX_TURN_RAD:
-            robot.append(a)
-            camera.append(camera_T_board[j] * camera_T_board[i].inv())
+    robot, camera = _between_all(turns, camera_T_board)
+    angles = robot.rotation.magnitude()
+    chosen = np.flatnonzero((angles >= _MIN_TURN_RAD) & (angles <= _MAX_TURN_RAD))
     # Two turns about different axes determine X; the third shows whether they belong together.
-    if len(robot) < 3:
+    if len(chosen) < 3:
         raise PosesNotDiverse("fewer than three pairs of poses turn by 3° or more")
-    return robot, camera
+    return robot[chosen], camera[chosen]
+
+
+def _between_all(
+    turns: Sequence[RigidTransform], camera_T_board: Sequence[RigidTransform]
+) -> tuple[RigidTransform, RigidTransform]:
+    """A and B for all pairs of poses, in the order of ``numpy.triu_indices``."""
+    # All in one: of twenty poses there are 190 pairs, and each operation of a single transform
+    # costs a hundred times its arithmetic.
+    first, second = np.triu_indices(len(turns), 1)
+    flange, board = RigidTransform.concatenate(turns), RigidTransform.concatenate(camera_T_board)
+    return flange[second].inv() * flange[first], board[second] * board[first].inv()

@@ -105,7 +105,7 @@ def test_a_camera_from_a_circle_grid(tmp_path: Path) -> None:
     for number in range(COUNT + 4):
         tilt_deg = (*rng.uniform(-35, 35, 2), rng.uniform(-180, 180))
         seen = circle_boards.seen_grid(stereo, circle_boards.STAGGERED, tilt_deg, rng)
-        cv2.imwrite(str(tmp_path / f"g-{number}.png"), seen.images.left)
+        cv2.imwrite(str(tmp_path / f"g-{number}.png"), seen.image)
     out, picture = tmp_path / "cam.json", tmp_path / "cam.png"
     arguments = ("camera", "--images", tmp_path / "g-*.png", "--board", "4x11", "--square-mm",
                  12, "--circle-mm", 10.5, "--asymmetric", "--out", out, "--picture",

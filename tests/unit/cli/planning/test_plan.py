@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 from cellctl.cli.planning.app import app
 from cellctl.cli.planning.opening import open_scene
 from cellctl.config import load_cell
+from cellctl.config.stated.moves import StatedMove
 from cellctl.errors.config import (
     ConfigUnreadable,
     HeadNotDescribed,
@@ -16,6 +17,9 @@ from cellctl.errors.config import (
     OutputNotWritten,
     PlanningNotInstalled,
 )
+from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.planning.ways import check_moves, check_zones
+from cellctl.planning.ways.check_moves import stated_moves
 
 DECK = "config/deck.toml"
 
@@ -49,7 +53,23 @@ def test_a_cell_whose_processes_state_no_moves_is_not_free(tmp_path: Path) -> No
         run("check", "config/small.toml", "--model", str(model))
 
 
+@pytest.mark.figures
 def test_the_shipped_deck_cell_passes_its_own_check() -> None:
+    code, output = run("check", DECK)
+    assert code == 0, output
+
+
+def test_what_is_free_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With few of the moves of the shipped cell, those of each procedure among them."""
+
+    def few(scene: CellScene) -> list[StatedMove]:
+        by_procedures: dict[frozenset[int], list[StatedMove]] = {}
+        for move in stated_moves(scene):
+            by_procedures.setdefault(move.procedures, []).append(move)
+        return [move for moves in by_procedures.values() for move in moves[:2]]
+
+    for module in (check_moves, check_zones):
+        monkeypatch.setattr(module, "stated_moves", few)
     code, output = run("check", DECK)
     assert code == 0, output
     assert "moves are free" in output

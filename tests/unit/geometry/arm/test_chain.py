@@ -21,3 +21,9 @@ def test_the_jacobian_is_the_slope_of_the_pose() -> None:
 def test_no_flange_is_farther_away_than_the_chain_is_long() -> None:
     for joints_rad in np.random.default_rng(1).uniform(-3.0, 3.0, (50, 6)):
         assert np.linalg.norm(CHAIN.base_T_flange(joints_rad).translation) < CHAIN.length_m
+
+
+def test_the_place_of_the_flange_is_that_of_its_pose() -> None:
+    joints_rad = np.radians([10.0, -60.0, 100.0, 20.0, 40.0, 80.0])
+    pose = CHAIN.base_T_flange(joints_rad)
+    np.testing.assert_allclose(CHAIN.flange_m(joints_rad), pose.translation, atol=1e-12)

@@ -121,6 +121,7 @@ def test_too_few_holes() -> None:
         part_pose(head_1, head_2, None, HOLES)
 
 
+@pytest.mark.figures
 def test_the_misfit_is_of_its_expected_size_with_an_uncertain_transfer() -> None:
     rng = np.random.default_rng(11)
     sigma = np.array([2e-5, 2e-5, 4e-5, 5e-5, 5e-5, 5e-5])

@@ -69,7 +69,13 @@ def test_heads_that_moved_hardly_move_the_deck() -> None:
     assert (joint < 1.1 * apart).all(), "and nothing is paid for it"
 
 
-@pytest.mark.parametrize("draws", [50, pytest.param(200, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "draws",
+    [
+        pytest.param(50, marks=pytest.mark.figures),
+        pytest.param(200, marks=pytest.mark.long),
+    ],
+)
 def test_the_covariance_is_honest_whatever_the_heads_did(draws: int) -> None:
     rng = np.random.default_rng(2)
     squared, misfits = [], []
@@ -84,10 +90,17 @@ def test_the_covariance_is_honest_whatever_the_heads_did(draws: int) -> None:
     assert np.mean(misfits) == pytest.approx(freedom, rel=0.05)
 
 
-@pytest.mark.parametrize("frames", [1, 4])
-def test_the_covariance_is_honest_when_the_arms_of_the_heads_sway(frames: int) -> None:
+@pytest.mark.parametrize(
+    ("frames", "draws"),
+    [
+        (4, 15),
+        pytest.param(1, 60, marks=pytest.mark.figures),
+        pytest.param(4, 60, marks=pytest.mark.figures),
+    ],
+)
+def test_the_covariance_is_honest_when_the_arms_of_the_heads_sway(frames: int, draws: int) -> None:
     rng, sway_m, squared = np.random.default_rng(4), 5e-6, []
-    for _ in range(60):
+    for _ in range(draws):
         parts = []
         for part in both(rng, np.zeros(6)):
             shift = rng.normal(size=(2, 3)) * [sway_m, sway_m, 0.0] / np.sqrt(frames)

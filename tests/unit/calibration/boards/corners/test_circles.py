@@ -65,10 +65,10 @@ def test_centres_at_oblique_views(
     board: CalibrationBoard, tilt_deg: tuple[float, float, float], dark: bool
 ) -> None:
     seen = seen_once(board, tilt_deg)
-    image = dark_circles(seen.images.left) if dark else seen.images.left
+    image = dark_circles(seen.image) if dark else seen.image
     corners = detect_corners(image, board)
     assert corners is not None
-    off_px, order = errors_px(board, corners, seen.left_px)
+    off_px, order = errors_px(board, corners, seen.centres_px)
     bias_px = offsets(board, seen)[order]
     corrected = off_px - bias_px
     assert np.sqrt((corrected**2).mean()) < 0.012
@@ -80,7 +80,7 @@ def test_centres_at_oblique_views(
 
 
 def test_a_mirrored_image_is_named_where_the_grid_has_no_mirror_image() -> None:
-    image = seen_once(EVEN, TILTS[1]).images.left
+    image = seen_once(EVEN, TILTS[1]).image
     assert detect_corners(image, EVEN) is not None
     mirrored = np.ascontiguousarray(image[:, ::-1])
     with pytest.raises(BoardMirrored, match=r"670.*4 x 10 asymmetric circle grid"):
@@ -96,14 +96,14 @@ def test_a_mirrored_image_is_named_where_the_grid_has_no_mirror_image() -> None:
     ids=str,
 )
 def test_a_part_of_a_larger_grid_is_not_taken(smaller: CalibrationBoard) -> None:
-    image = seen_once(STAGGERED, TILTS[0]).images.left
+    image = seen_once(STAGGERED, TILTS[0]).image
     assert detect_corners(image, smaller) is None
 
 
 def test_a_covered_circle_is_no_grid() -> None:
     seen = seen_once(GRID, TILTS[0])
-    image = seen.images.left.copy()
-    x, y = np.rint(seen.left_px[30]).astype(int)
+    image = seen.image.copy()
+    x, y = np.rint(seen.centres_px[30]).astype(int)
     image[y - 30 : y + 30, x - 30 : x + 30] = image[y - 29, x - 29]
     assert detect_corners(image, GRID) is None
 

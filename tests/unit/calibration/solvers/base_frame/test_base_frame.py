@@ -31,7 +31,7 @@ def error(result: BaseFrameResult) -> Array:
     return np.concatenate(pose_error(C_T_BASE, result.c_T_base.pose))
 
 
-@pytest.mark.parametrize("seeds", [5, pytest.param(20, marks=pytest.mark.long)])
+@pytest.mark.parametrize("seeds", [2, pytest.param(20, marks=pytest.mark.figures)])
 def test_accuracy_and_honest_covariance(seeds: int) -> None:
     results = [calibrate(seed) for seed in range(seeds)]
     errors = np.stack([error(result) for result in results])

@@ -34,9 +34,9 @@ from tests.rigs.calibration.stereo_views import (
     volume_points,
 )
 
-FEW = range(2)
-SEEDS = range(4)
-"""A calibration of thirty views takes seconds: four of each kind are for the tests marked long."""
+ONE, FEW, SEEDS = range(1), range(2), range(4)
+"""A calibration of thirty views takes seconds: more than one of each kind are for the tests marked
+figures, four for those marked long."""
 TRUTH = table_1_head()
 BOW_M = 5e-5
 
@@ -71,7 +71,14 @@ def calibrations(
     return [calibration(seed, sag_m, shape) for seed in seeds]
 
 
-@pytest.fixture(params=[FEW, pytest.param(SEEDS, marks=pytest.mark.long)], ids=["few", "all"])
+@pytest.fixture(
+    params=[
+        ONE,
+        pytest.param(FEW, marks=pytest.mark.figures),
+        pytest.param(SEEDS, marks=pytest.mark.long),
+    ],
+    ids=["one", "few", "all"],
+)
 def seeds(request: pytest.FixtureRequest) -> range:
     chosen = request.param
     assert isinstance(chosen, range)
@@ -146,7 +153,7 @@ def test_noise_and_residuals_are_reported(bowed: list[StereoResult]) -> None:
 
 def test_print_with_another_aspect_ratio_needs_the_free_board() -> None:
     flat_m = BOARD.corners_m
-    views = make_views(np.random.default_rng(3), 30)
+    views = make_views(np.random.default_rng(3), 16)
     wrong = [_stretch(view, flat_m, 1e-4) for view in views]
     bent = calibrate_stereo(wrong, BOARD, IMAGE_SIZE)
     free = calibrate_stereo(wrong, BOARD, IMAGE_SIZE, shape=BoardShape.FREE)
@@ -178,7 +185,7 @@ def _cubic(points: Array) -> Array:
 
 def test_bad_view_is_named_and_left_out() -> None:
     rng = np.random.default_rng(11)
-    views = make_views(rng, 24)
+    views = make_views(rng, 14)
     noisy = views[7].left.pixels + rng.normal(0, 0.5, views[7].left.pixels.shape)
     views[7] = replace(views[7], left=Corners(views[7].left.ids, noisy))
     result = calibrate_stereo(views, BOARD, IMAGE_SIZE)
@@ -264,6 +271,7 @@ def test_the_same_files_for_both_cameras() -> None:
         calibrate_stereo([replace(view, right=view.left) for view in views], BOARD, IMAGE_SIZE)
 
 
+@pytest.mark.figures
 def test_covariance_is_honest_where_errors_hang_together_within_a_view() -> None:
     squares, moves = [], []
     for seed in range(4):

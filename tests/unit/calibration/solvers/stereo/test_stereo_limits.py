@@ -29,7 +29,7 @@ def test_a_good_set_passes_whatever_the_size_of_the_head(scale: float) -> None:
     assert calibrated(scale).passed, failed(calibrated(scale))
 
 
-@pytest.mark.parametrize("scale", [0.1, 1.0, 6.0])
+@pytest.mark.parametrize("scale", [0.1, 6.0])
 def test_corners_that_are_too_rough_fail_whatever_the_size_of_the_head(scale: float) -> None:
     assert "held-out error" in failed(calibrated(scale, 0.15))
 

@@ -81,9 +81,16 @@ def test_equation_4() -> None:
     assert result.sigma[3:] == pytest.approx(1e-6, rel=1e-6)
 
 
-@pytest.mark.parametrize("placements", [1, pytest.param(3, marks=pytest.mark.long)])
-def test_covariances_are_honest_for_each_pose(placements: int) -> None:
-    results = [calibrate(seed, placements) for seed in range(40)]
+@pytest.mark.parametrize(
+    ("placements", "draws"),
+    [
+        (1, 10),
+        pytest.param(1, 40, marks=pytest.mark.figures),
+        pytest.param(3, 40, marks=pytest.mark.long),
+    ],
+)
+def test_covariances_are_honest_for_each_pose(placements: int, draws: int) -> None:
+    results = [calibrate(seed, placements) for seed in range(draws)]
     assert all(result.passed for result in results)
     band = chi2(6 * len(results)).interval(0.999)
     truths = {
