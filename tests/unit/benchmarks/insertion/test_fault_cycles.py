@@ -35,6 +35,7 @@ def test_a_sensor_is_true_until_its_fault_begins(cell: CycleCell) -> None:
     np.testing.assert_array_equal(sensor.tell(sample, 5.0), -sample)
 
 
+@pytest.mark.figures
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_part_that_slips_to_a_stop_has_slipped(cell: CycleCell, seed: int) -> None:
     trap = run_contact_trap(cell, TrapState.SLIPS_TO_STOP, seed)

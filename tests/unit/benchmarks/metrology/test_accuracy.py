@@ -11,7 +11,10 @@ from fakes.render import api
 from tests.rigs.metrology.scenes import parts
 
 
-@pytest.fixture(scope="module", params=[3, pytest.param(5, marks=pytest.mark.long)])
+@pytest.fixture(
+    scope="module",
+    params=[1, pytest.param(3, marks=pytest.mark.figures), pytest.param(5, marks=pytest.mark.long)],
+)
 def clean(request: pytest.FixtureRequest) -> Run:
     run = Run()
     for part in parts("deck", api.RenderOptions.clean(noise_grey=2.0), 2, request.param, seed=7):
@@ -39,8 +42,8 @@ def test_clean_holes_are_measured_near_the_physical_limit(clean: Run) -> None:
     assert not clean.failures
     for kind, errors in clean.holes.items():
         # Five exposures give 40 and 80 image points, whose median scatters by less than 13 % and
-        # 9 %; three exposures, by 17 % and 12 %. The bound knows nothing of a cone, whose grey must
-        # be estimated too.
+        # 9 %; three exposures, by 17 % and 12 %; one, by 29 % and 20 %. The bound knows nothing of
+        # a cone, whose grey must be estimated too.
         assert errors.median_ratio() < {"pin": 1.4, "countersink": 1.9}[kind]
         assert errors.worst_px() < 6.0 * max(errors.bounds_px)
 

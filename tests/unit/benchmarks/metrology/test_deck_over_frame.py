@@ -21,6 +21,7 @@ def steady() -> Steady:
     return found
 
 
+@pytest.mark.figures
 def test_a_deck_over_its_frame_stays_where_it_is(steady: Steady) -> None:
     assert not steady.refused
     assert steady.pairs == {OVER: 6}
@@ -34,17 +35,25 @@ def test_a_deck_over_its_frame_stays_where_it_is(steady: Steady) -> None:
         assert rims.squared < 3.0, kind
 
 
+def jumping() -> Steadiness:
+    """Two frames, between which a centre has gone 0.1 px along x."""
+    found = Steadiness()
+    found.add(np.array([[0.0, 0.0], [0.1, 0.0]]), np.tile(np.eye(2) * 0.03**2, (2, 1, 1)))
+    return found
+
+
+def test_how_far_a_centre_jumps() -> None:
+    assert jumping().farthest_px == pytest.approx(0.1)
+    # The variance of x is 0.1² / 2, that of y is 0.
+    assert jumping().jitter_px == pytest.approx(0.05)
+    assert jumping().sigma_px == pytest.approx(0.03)
+
+
+@pytest.mark.figures
 def test_a_centre_that_jumps_is_judged(steady: Steady) -> None:
     for rims in steady.rims.values():
         rims.errors.along_px[:] = [np.zeros(2)] * rims.errors.count
     assert judged(steady)[1]
-    jumping = Steadiness()
-    covariances = np.tile(np.eye(2) * 0.03**2, (2, 1, 1))
-    jumping.add(np.array([[0.0, 0.0], [0.1, 0.0]]), covariances)
-    assert jumping.farthest_px == pytest.approx(0.1)
-    # Two frames: the variance of x is 0.1² / 2, that of y is 0.
-    assert jumping.jitter_px == pytest.approx(0.05)
-    assert jumping.sigma_px == pytest.approx(0.03)
     for rims in steady.rims.values():
-        rims.moved_px.extend(jumping.moved_px * 20)
+        rims.moved_px.extend(jumping().moved_px * 20)
     assert not judged(steady)[1]

@@ -29,7 +29,13 @@ def test_a_point_spread_keeps_light_and_place(name: str) -> None:
         assert abs(spread.sum(axis=1) @ steps) < 2e-3
 
 
-@pytest.mark.parametrize("name", CONDITIONS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        "none",
+        *(pytest.param(one, marks=pytest.mark.figures) for one in CONDITIONS if one != "none"),
+    ],
+)
 def test_a_disc_is_measured_under_every_condition(name: str) -> None:
     errors = HoleErrors()
     fault = measure(drawn_scene("disc", 1, CONDITIONS[name]), errors, "default", skip=0)

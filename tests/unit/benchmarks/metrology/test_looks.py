@@ -28,9 +28,14 @@ WORST_PX = {
     "turns": 0.10,
     "chamfered turns": 0.15,
 }
+QUICK = ("lit wall", "true cone", "turns")
+"""A wall, a cone and a thread: one look of each kind of rim. All others are figures."""
 
 
-@pytest.mark.parametrize("look", LOOKS)
+@pytest.mark.parametrize(
+    "look",
+    [*QUICK, *(pytest.param(one, marks=pytest.mark.figures) for one in LOOKS if one not in QUICK)],
+)
 def test_every_look_is_measured_and_its_uncertainty_is_honest(look: str) -> None:
     errors = HoleErrors()
     assert measure(drawn_scene(look, 2), errors, "default") is None

@@ -98,6 +98,7 @@ def test_tables_and_picture(tmp_path: Path) -> None:
     assert (tmp_path / "study.png").stat().st_size > 10_000
 
 
+@pytest.mark.figures
 def test_a_trial_of_the_mating_is_plain_data() -> None:
     row = run_seed("deck-mating", 1, {})
     assert StudyOutcome.of(json.loads(json.dumps(row))).row() == row

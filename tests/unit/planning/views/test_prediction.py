@@ -1,6 +1,7 @@
 """The predicted pose against the estimator on drawn measurements, and its parts."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from cellctl.geometry.pose import Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose, perturbed
 from cellctl.planning.views.hole_image import image_covariance, pixels
 from cellctl.planning.views.plan_viewpoints import taught_placement
-from cellctl.planning.views.prediction import SOURCES, ViewGeometry, predicted_pose
+from cellctl.planning.views.prediction import SOURCES, PredictedPose, ViewGeometry, predicted_pose
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import triangulate
@@ -65,6 +66,7 @@ def measured(head: StereoHead, hole: Hole, seen_px: Array, spread_px2: Array) ->
     )
 
 
+@pytest.mark.figures
 def test_drawn_measurements_scatter_as_predicted() -> None:
     rng = np.random.default_rng(5)
     still = replace(PLACEMENT, measurement=replace(PLACEMENT.measurement, sway_m=0.0))
@@ -96,8 +98,13 @@ def test_drawn_measurements_scatter_as_predicted() -> None:
     assert (ratio < 1.25).all(), ratio
 
 
+@cache
+def explained() -> PredictedPose:
+    return predicted_pose(PLACEMENT, explain=True)
+
+
 def test_the_sources_add_up_to_the_whole() -> None:
-    predicted = predicted_pose(PLACEMENT, explain=True)
+    predicted = explained()
     assert set(predicted.by_source) == set(SOURCES)
     total = sum(predicted.by_source.values())
     assert total == pytest.approx(np.diag(predicted.covariance), rel=0.01)
@@ -108,7 +115,7 @@ def test_the_sources_add_up_to_the_whole() -> None:
 
 
 def test_about_x_depends_on_the_images_and_z_on_the_calibration() -> None:
-    predicted = predicted_pose(PLACEMENT, explain=True)
+    predicted = explained()
     assert np.argmax(predicted.shares) == 3
     assert predicted.by_source["images"][3] > 0.5 * predicted.covariance[3, 3]
     assert 0.0 < predicted.calibration[2, 2] < predicted.covariance[2, 2]

@@ -42,12 +42,23 @@ def box_at(place_m: tuple[float, float, float], size_m: float = 0.2) -> Solid:
     return Solid("obstacle", None, 0, pose, BoxShape((size_m,) * 3), 0.0, stand_in=False)
 
 
-def test_a_way_around_the_heads_is_found_and_free_by_another_library(tmp_path: Path) -> None:
+@pytest.mark.figures
+def test_a_way_around_the_heads_is_found_and_free_by_another_library() -> None:
     scene = deck_scene()
     way = main_way(scene)
     assert len(way.joints_rad) > 2
     assert least_slack_m(scene, way) > -1e-4
-    # What is written is what was planned, and the file is still a good one, comments included.
+
+
+def test_what_is_written_is_what_was_planned_and_the_file_is_still_a_good_one(
+    tmp_path: Path,
+) -> None:
+    scene = deck_scene()
+    arm, stated = scene.arms["main"], scene.cell.robots["main"].ways[0]
+    via_rad = np.radians(stated.via_deg) + np.radians(1.0)
+    joints_rad = np.vstack([arm.taught_rad(stated.start), via_rad, arm.taught_rad(stated.end)])
+    narrowest = scene.around("main", {}).narrowest(joints_rad[0])
+    way = PlannedWay("main", stated.start, stated.end, joints_rad, narrowest, 1.0)
     text = with_ways_written(DECK.read_text(encoding="utf-8"), [way])
     assert "# The fake cell." in text
     written = tmp_path / "deck.toml"
