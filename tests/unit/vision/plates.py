@@ -119,7 +119,7 @@ def render(
     clean = image.astype(np.float32)
     sigma = np.sqrt(half + np.float32(half / light.plate) * np.maximum(clean, 0))
     noisy = clean + sigma * rng.standard_normal(image.shape, dtype=np.float32)
-    return np.clip(np.round(noisy), 0, 255).astype(np.uint8)
+    return np.asarray(np.clip(np.round(noisy), 0, 255), dtype=np.uint8)
 
 
 def render_pair(

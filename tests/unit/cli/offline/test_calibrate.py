@@ -421,27 +421,27 @@ def test_stereo_with_an_impossible_board(tmp_path: Path, board: str) -> None:
     assert "board" in result.output
 
 
-def quarter_size_head() -> StereoTruth:
-    """The nominal head with every fourth pixel: quick to render."""
+def half_size_head() -> StereoTruth:
+    """The nominal head with every second pixel: quick to render."""
     full = api.nominal_head()
     left, right = (
         LensTruth(
-            (lens.focal_px[0] / 4, lens.focal_px[1] / 4),
-            (lens.centre_px[0] / 4, lens.centre_px[1] / 4),
+            (lens.focal_px[0] / 2, lens.focal_px[1] / 2),
+            (lens.centre_px[0] / 2, lens.centre_px[1] / 2),
             lens.distortion,
             lens.blur_px,
             lens.gain,
         )
         for lens in (full.left, full.right)
     )
-    return StereoTruth((612, 512), left, right, full.right_T_left)
+    return StereoTruth((1224, 1024), left, right, full.right_T_left)
 
 
 @pytest.fixture(scope="module")
 def images(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Twelve rendered pairs of a bowed 9 x 6 board."""
     folder = tmp_path_factory.mktemp("stereo")
-    head, rng = quarter_size_head(), np.random.default_rng(4)
+    head, rng = half_size_head(), np.random.default_rng(4)
     for number in range(12):
         pose = api.facing_pose(
             shift_m=(*rng.uniform(-0.04, 0.04, 2), rng.uniform(-0.03, 0.06)),
@@ -462,8 +462,8 @@ def test_stereo_from_images(images: Path, tmp_path: Path) -> None:
     out, picture = tmp_path / "head.json", tmp_path / "head.png"
     result = stereo(images, out, "--picture", picture)
     assert result.exit_code == 0, result.output
-    head, truth = read_stereo_head(out), quarter_size_head()
-    assert head.image_size == (612, 512)
+    head, truth = read_stereo_head(out), half_size_head()
+    assert head.image_size == (1224, 1024)
     assert head.rms_px < 0.08
     off = head.translation_m - truth.right_T_left.translation
     assert np.abs(off).max() < 1e-4
@@ -483,9 +483,9 @@ BENT = ("--board-shape", "bent", "--lens", "five")
 def test_squares_of_another_size_are_noticed_by_what_is_known(images: Path, tmp_path: Path) -> None:
     out, baseline_mm = (
         tmp_path / "head.json",
-        1e3 * np.linalg.norm(quarter_size_head().right_T_left.translation),
+        1e3 * np.linalg.norm(half_size_head().right_T_left.translation),
     )
-    known = stereo(images, out, *BENT, "--baseline-mm", baseline_mm, "--focal-px", 895)
+    known = stereo(images, out, *BENT, "--baseline-mm", baseline_mm, "--focal-px", 1790)
     assert known.exit_code == 0, known.output
     assert "nothing tells whether squares" not in known.output
     result = stereo(images, out, *BENT, "--square-mm", 25, "--baseline-mm", baseline_mm)
