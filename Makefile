@@ -197,7 +197,7 @@ test-parallel test-version test-cell test-figures test-explore test-long coverag
 # What failed beside other tests is run once more, alone, unless it is more than a few.
 AGAIN := --last-failed --last-failed-no-failures none --most-again 3
 test-parallel: venv
-	$(BIN)/pytest -n 4 -m "not cell and not long and not figures" --durations 25 || \
+	$(BIN)/pytest -n 4 --ignore tests/cell -m "not cell and not long and not figures" --durations 25 || \
 		$(BIN)/pytest -m "not cell and not long and not figures" $(AGAIN)
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes

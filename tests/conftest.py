@@ -1,5 +1,6 @@
 """How tests are marked and shared out between workers, and what slow machines are allowed."""
 
+import atexit
 import gc
 import logging
 from collections.abc import Iterator
@@ -63,6 +64,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("cell")
 
 
+def pytest_configure(config: pytest.Config) -> None:
+    """While tests are collected nearly everything that is made stays: to look through it again and
+    again finds nothing."""
+    gc.disable()
+
+
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Everything that is there now stays to the end: the garbage collector need not go through it.
 
@@ -71,11 +78,12 @@ def pytest_collection_finish(session: pytest.Session) -> None:
     """
     gc.collect()
     gc.freeze()
+    gc.enable()
 
 
-def pytest_unconfigure(config: pytest.Config) -> None:
-    """Libraries in C++ that look for leaks at the end would take what is frozen for one."""
-    gc.unfreeze()
+# Libraries in C++ that look for leaks at the end would take what is frozen for one. Not earlier:
+# pytest itself collects garbage after the last test.
+atexit.register(gc.unfreeze)
 
 
 class CellsOneByOne(LoadScopeScheduling):  # type: ignore[misc]  # xdist has no types

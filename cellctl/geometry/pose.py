@@ -23,8 +23,12 @@ def pose_from_xyzabc(xyz_mm_abc_deg: ArrayLike) -> RigidTransform:
     values = np.asarray(xyz_mm_abc_deg, dtype=float)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise ValueError(f"a pose is six finite numbers, got {xyz_mm_abc_deg!r}")
-    rotation = Rotation.from_euler("ZYX", values[3:], degrees=True)
-    return RigidTransform.from_components(values[:3] * MM, rotation)
+    # What `from_components` gives, which takes three times as long: it makes a pose of each of the
+    # two, multiplies them and looks whether the product is one.
+    matrix = np.eye(4)
+    matrix[:3, :3] = Rotation.from_euler("ZYX", values[3:], degrees=True).as_matrix()
+    matrix[:3, 3] = values[:3] * MM
+    return RigidTransform(matrix, normalize=False)
 
 
 def pose_to_xyzabc(pose: RigidTransform) -> Array:

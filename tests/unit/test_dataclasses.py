@@ -7,15 +7,21 @@ as it meets one. The sources are read and not imported, because to import all of
 import ast
 import contextlib
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-TEXTS = [
-    path.read_text(encoding="utf-8")
-    for package in ("cellctl", "drivers", "fakes")
-    for path in (ROOT / package).rglob("*.py")
-]
-SOURCES = [ast.parse(text) for text in TEXTS if "@dataclass" in text or "NDArray" in text]
+
+
+@cache
+def sources() -> list[ast.Module]:
+    """Files with dataclasses or with types made of arrays."""
+    texts = [
+        path.read_text(encoding="utf-8")
+        for package in ("cellctl", "drivers", "fakes")
+        for path in (ROOT / package).rglob("*.py")
+    ]
+    return [ast.parse(text) for text in texts if "@dataclass" in text or "NDArray" in text]
 
 
 def names_in(node: ast.AST) -> set[str]:
@@ -34,7 +40,7 @@ def array_types() -> set[str]:
     """``NDArray``, ``ndarray`` and all names that stand for a type made of them."""
     aliases = {
         node.targets[0].id: names_in(node.value)
-        for tree in SOURCES
+        for tree in sources()
         for node in tree.body
         if isinstance(node, ast.Assign)
         and isinstance(node.targets[0], ast.Name)
@@ -48,7 +54,7 @@ def array_types() -> set[str]:
 
 def dataclasses() -> Iterator[tuple[ast.ClassDef, str]]:
     """Every dataclass with the source of its decorator."""
-    for tree in SOURCES:
+    for tree in sources():
         for node in ast.walk(tree):
             if isinstance(node, ast.ClassDef):
                 for decorator in node.decorator_list:

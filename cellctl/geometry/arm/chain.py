@@ -50,7 +50,8 @@ class ArmChain:
 
     def base_T_flange(self, joints_rad: Array) -> RigidTransform:
         """Pose of the flange at joints of shape (6,)."""
-        return RigidTransform.from_matrix(self.link_frames(joints_rad)[6])
+        # A product of rotations is one: `from_matrix` would look whether it is.
+        return RigidTransform(self.link_frames(joints_rad)[6], normalize=False)
 
     def flange_m(self, joints_rad: Array) -> Array:
         """Place of the flange alone, shape (3,): a transform takes far longer to make."""

@@ -18,7 +18,7 @@ from cellctl.cell.run_notes import RunNotes
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.time_limits import TimeLimits
 from cellctl.clock import now_s, utc_now
-from cellctl.config import CellConfig, load_cell
+from cellctl.config import CellConfig
 from cellctl.errors import CellError
 from cellctl.errors.internal import WorkerDied
 from cellctl.geometry.pose import Array, pose_from_xyzabc
@@ -46,6 +46,7 @@ from cellctl.vision.registration.part_pose import PartPose
 from cellctl.vision.registration.relative_pose import RelativePose
 from tests.contracts.inprocess.stereo_camera import InProcessHead
 from tests.contracts.inprocess.target_tracker import InProcessTracker
+from tests.rigs.shipped import shipped_cell
 from tests.unit.calibration.store.shipped import REQUIRED, renew_calibrations
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
@@ -238,7 +239,7 @@ def make_bench(tmp_path: Path) -> Bench:
     """Everything nominal but frame and grip, which are off by a few millimetres."""
     folder = tmp_path / "calibration"
     renew_calibrations(folder)
-    config = load_cell(CELL_FILE)
+    config = shipped_cell(CELL_FILE.name)
     config = config.model_copy(update={"calibration_dir": str(folder)})
     cell = CellInMemory(config, CELL_FILE.parent)
     for head in cell.heads:

@@ -2,20 +2,33 @@
 
 import tomllib
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from cellctl.config.key_reference import cell_file_tables, driver_tables, process_tables
+from cellctl.config.key_reference import KeyTable, cell_file_tables, driver_tables, process_tables
 
 CONFIG = Path(__file__).parents[3] / "config"
 SHIPPED = sorted(
     path for path in CONFIG.glob("*.toml") if not path.stem.endswith((".scenario", ".model"))
 )
-WHOSE = [*(("", table) for table in cell_file_tables()), *driver_tables(), *process_tables()]
-TABLES = [table for _, table in WHOSE]
-KEYS = {key.name for table in TABLES for key in table.keys}
-HEADERS = " ".join(table.header for table in TABLES)
+
+
+@cache
+def whose() -> list[tuple[str, KeyTable]]:
+    """All tables with the driver or process whose they are."""
+    return [*(("", table) for table in cell_file_tables()), *driver_tables(), *process_tables()]
+
+
+@cache
+def tables() -> list[KeyTable]:
+    return [table for _, table in whose()]
+
+
+@cache
+def keys() -> set[str]:
+    return {key.name for table in tables() for key in table.keys}
 
 
 def written(node: object) -> Iterator[str]:
@@ -45,16 +58,17 @@ def test_every_key_of_the_shipped_cells_is_there(file: Path) -> None:
         for named in ("inputs", "outputs"):
             device["settings"].pop(named, None)
     chosen = {name for recipe in cell.get("recipes", ()) for name in recipe.pop("roles", {})}
-    assert set(written(cell)) - chosen <= KEYS
+    assert set(written(cell)) - chosen <= keys()
 
 
 def test_no_table_is_there_twice_and_all_have_words() -> None:
-    places = [(whose, table.header) for whose, table in WHOSE]
+    places = [(of, table.header) for of, table in whose()]
     assert len(set(places)) == len(places)
-    assert all(table.about for table in TABLES)
+    assert all(table.about for table in tables())
 
 
 def test_tables_inside_tables_have_their_place() -> None:
+    headers = " ".join(table.header for table in tables())
     for header in (
         "[robots.NAME.load]",
         "[[robots.NAME.ways]]",
@@ -63,4 +77,4 @@ def test_tables_inside_tables_have_their_place() -> None:
         "[processes.deck-to-frame]",
         "[force_sensors.NAME.stop_channel.settings]",
     ):
-        assert header in HEADERS
+        assert header in headers

@@ -7,15 +7,16 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
-from cellctl.config import CellConfig, load_cell
+from cellctl.config import CellConfig
 from cellctl.config.service_limits import drop_in, service_limits
+from tests.rigs.shipped import shipped_cell
 
 CONFIG = Path(__file__).parents[3] / "config"
 
 
 @pytest.fixture(scope="module")
 def template() -> CellConfig:
-    return load_cell(CONFIG / "cell.toml")
+    return shipped_cell("cell.toml")
 
 
 def changed(cell: CellConfig, **settings: Any) -> CellConfig:

@@ -5,10 +5,10 @@ import pwd
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cellctl.config import load_cell
 from cellctl.config.service_limits import drop_in, service_limits
 from cellctl.doctor.pc import Pc
 from cellctl.doctor.service import LIMITS_DROP_IN, UNIT
+from tests.rigs.shipped import shipped_cell
 
 ROOT = Path(__file__).parents[3]
 CELL_FILE = ROOT / "config" / "cell.toml"
@@ -47,7 +47,7 @@ class HealthyPc:
     reached: bool = True
 
     def __post_init__(self) -> None:
-        cell = load_cell(CELL_FILE)
+        cell = shipped_cell(CELL_FILE.name)
         for path, text in FILES.items():
             self.write(path, text)
         self.write(UNIT, SHIPPED_UNIT.read_text())

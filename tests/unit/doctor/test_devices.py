@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.config import load_cell
 from cellctl.doctor.devices import device_findings
 from cellctl.doctor.finding import Health
 from cellctl.doctor.service import installed_service
+from tests.rigs.shipped import shipped_cell
 from tests.unit.doctor.healthy_pc import CELL_FILE, HealthyPc
 
 
@@ -15,7 +15,7 @@ from tests.unit.doctor.healthy_pc import CELL_FILE, HealthyPc
     ("state", "health"), [(None, Health.BAD), ("down", Health.BAD), ("up", Health.GOOD)]
 )
 def test_a_can_bus(tmp_path: Path, state: str | None, health: Health) -> None:
-    cell = load_cell(CELL_FILE)
+    cell = shipped_cell(CELL_FILE.name)
     name, sensor = next(iter(cell.force_sensors.items()))
     settings = {**sensor.settings, "transport": "can", "can_channel": "can1"}
     on_can = sensor.model_copy(update={"settings": settings})

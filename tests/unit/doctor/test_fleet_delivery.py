@@ -4,12 +4,12 @@ from datetime import timedelta
 from pathlib import Path
 
 from cellctl.clock import utc_now
-from cellctl.config import load_cell
 from cellctl.config.cell import CellConfig, FleetConfig
 from cellctl.doctor.finding import Finding, Health
 from cellctl.doctor.fleet_delivery import delivery_findings
 from cellctl.doctor.pc import Pc
 from cellctl.records.files.delivery_file import FOLDER, NAME, DeliveryState, write_state
+from tests.rigs.shipped import shipped_cell
 from tests.unit.doctor.healthy_pc import CELL_FILE
 
 
@@ -21,7 +21,7 @@ def state_of(**changes: object) -> DeliveryState:
 
 def fleet_cell(folder: Path) -> CellConfig:
     fleet = FleetConfig(url="postgresql://north@db/fleet", password_file=str(folder / "password"))
-    return load_cell(CELL_FILE).model_copy(update={"fleet": fleet})
+    return shipped_cell(CELL_FILE.name).model_copy(update={"fleet": fleet})
 
 
 def found(folder: Path, state: DeliveryState | None) -> Finding:
@@ -33,7 +33,7 @@ def found(folder: Path, state: DeliveryState | None) -> Finding:
 
 
 def test_a_cell_without_a_fleet_is_not_asked(tmp_path: Path) -> None:
-    assert list(delivery_findings(Pc(root=tmp_path), load_cell(CELL_FILE))) == []
+    assert list(delivery_findings(Pc(root=tmp_path), shipped_cell(CELL_FILE.name))) == []
 
 
 def test_all_is_delivered(tmp_path: Path) -> None:

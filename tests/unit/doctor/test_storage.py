@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.config import load_cell
 from cellctl.doctor.service import installed_service
 from cellctl.doctor.storage import storage_findings
+from tests.rigs.shipped import shipped_cell
 from tests.unit.doctor.healthy_pc import CELL_FILE, HealthyPc
 
 AT_SRV = (
@@ -38,6 +38,6 @@ def test_a_folder_below_one_that_may_be_written(
     healthy.in_unit(command, f"{AT_SRV}\nReadWritePaths={allowed}")
     service = installed_service(healthy.pc())
     assert service is not None
-    found = storage_findings(healthy.pc(), service, load_cell(CELL_FILE))
+    found = storage_findings(healthy.pc(), service, shipped_cell(CELL_FILE.name))
     refused = any("lets the service write nothing" in one.found for one in found)
     assert refused is not writable

@@ -7,7 +7,6 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
-from cellctl.config import load_cell
 from cellctl.errors.link import VersionMismatch
 from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.geometry.arm.chain import ArmChain
@@ -18,6 +17,7 @@ from drivers.robot.siasun.driver import SiasunRobot
 from drivers.robot.siasun.kinematics import arm_chain
 from fakes.scenes.load import load
 from fakes.world.arm import forward_matrix, nominal_links
+from tests.rigs.shipped import shipped_cell
 from tests.rigs.wire.sjl_rig import sjl_rig
 from tests.rigs.wire.standing_arm import SCENARIO
 
@@ -27,7 +27,7 @@ HOME = np.radians([0.0, -90.0, 90.0, 0.0, 90.0, 90.0])
 
 
 def config_of(robot: str) -> SiasunConfig:
-    return SiasunConfig.model_validate(load_cell(CELL).robots[robot].settings)
+    return SiasunConfig.model_validate(shipped_cell(CELL.name).robots[robot].settings)
 
 
 def standing_at(joints_rad: np.ndarray, base_T_flange: RigidTransform) -> RobotState:
@@ -66,7 +66,7 @@ def test_the_table_of_the_cell_file_is_the_arm_of_the_scenario(robot: str) -> No
 @pytest.mark.parametrize("robot", ROBOTS)
 def test_all_taught_poses_of_the_cell_file_can_be_reached(robot: str) -> None:
     config = config_of(robot)
-    poses = [np.radians(pose) for pose in load_cell(CELL).robots[robot].poses_deg.values()]
+    poses = [np.radians(pose) for pose in shipped_cell(CELL.name).robots[robot].poses_deg.values()]
     for start in poses:
         state = standing_at(start, chain_of(robot).base_T_flange(start))
         for target in poses:

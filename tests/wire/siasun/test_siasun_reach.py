@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config import load_cell
 from cellctl.config.stated.moves import MoveKind
 from cellctl.errors.robot import WayNotReached
 from cellctl.planning.ways.polyline import joints_at
@@ -12,6 +11,7 @@ from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.stated_moves import deck_moves
 from drivers.robot.siasun.bounds import LINEAR_STEPS, Bounds
 from drivers.robot.siasun.config import SiasunConfig
+from tests.rigs.shipped import shipped_cell
 from tests.rigs.wire.sjl_rig import sjl_rig
 from tests.rigs.wire.standing_arm import READY_DEG
 from tests.unit.planning.deck_cell import DECK, deck_scene
@@ -75,7 +75,7 @@ def test_without_a_table_nothing_is_known() -> None:
 
 
 def test_every_straight_move_of_the_shipped_cell_is_free() -> None:
-    cell, scene = load_cell(DECK), deck_scene()
+    cell, scene = shipped_cell(DECK.name), deck_scene()
     recipes = [recipe for recipe in cell.recipes if isinstance(recipe, DeckRecipe)]
     moves = [move for recipe in recipes for move in deck_moves(cell, recipe)]
     straight = [move for move in moves if move.kind is MoveKind.LINEAR]

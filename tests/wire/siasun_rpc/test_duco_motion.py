@@ -1,12 +1,10 @@
 """What the controller of a collaborative arm says, and what becomes of it."""
 
 import asyncio
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cellctl.config import load_cell
 from cellctl.errors.base import CellError
 from cellctl.errors.link import LinkError, StaleData, VersionMismatch
 from cellctl.errors.robot import (
@@ -24,10 +22,11 @@ from cellctl.interfaces.robot import RobotMode
 from drivers.robot.siasun_rpc import faults
 from drivers.robot.siasun_rpc.features import features
 from drivers.robot.siasun_rpc.vendor import SafetyState, TaskState, name
+from tests.rigs.shipped import shipped_cell
 from tests.rigs.wire.duco_rig import duco_rig
 from tests.wire.siasun_rpc.duco_moves import begun, move, rearm, stands, up
 
-DH = load_cell(Path(__file__).parents[3] / "config" / "deck.toml").robots["main"].settings["dh"]
+DH = shipped_cell("deck.toml").robots["main"].settings["dh"]
 """D-H lengths of the fake arm."""
 
 # --- ends of a task

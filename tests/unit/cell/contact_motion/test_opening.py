@@ -14,7 +14,6 @@ from cellctl.cell.contact_motion.settings import ContactSettings
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.config.load import load_cell
 from cellctl.errors.robot import StreamNotOffered
 from cellctl.errors.streamed_contact import LoopTooSlow, LoopUnstable
 from cellctl.force.contact.streamed.gains import LoopFigures
@@ -22,6 +21,7 @@ from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
 from tests.contracts.inprocess.robot import InProcessRobot
 from tests.contracts.inprocess.streaming_robot import OFFER, InProcessStreamingRobot
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 from tests.unit.cell.contact_motion.elastic_world import FRAMES
 from tests.unit.cell.guard import TinyGuard
@@ -36,7 +36,7 @@ def settings(stiffness_n_m: float = 1e6) -> ContactSettings:
 
 
 def arm_of(robot: Robot, guard: TinyGuard) -> tuple[Cell, GuardedRobot]:
-    config = load_cell(CELL_FILE)
+    config = shipped_cell(CELL_FILE.name)
     cell = cast(Cell, SimpleNamespace(trips_awaited=lambda _: nullcontext()))
     sensor = config.force_sensors["force"]
     watching = cast(GuardClient, guard)

@@ -10,11 +10,11 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.config.load import load_cell
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
 from tests.rigs.mating.cell import MatingCell
 from tests.rigs.mating.simulated_loop import run_simulated
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 
 UP_M = 5e-3
@@ -27,7 +27,7 @@ def test_the_first_move_after_a_restart_may_be_one_out_of_a_station(restarted: b
         world.guard.begin_anew()
         # Until a pose and a sample have come in, which takes the real guard as long to open.
         world.advance(world.start_s + 0.1)
-    config = load_cell(CELL_FILE)
+    config = shipped_cell(CELL_FILE.name)
     arm = GuardedRobot(
         cast(Robot, world.robot), config.robots["main"], "force",
         cast(GuardClient, world.guard), config.force_sensors["force"],

@@ -17,8 +17,8 @@ from cellctl.cell.patience.patient_devices import (
     PatientTracker,
 )
 from cellctl.cell.patience.patient_robot import PatientRobot
-from cellctl.config import load_cell
 from cellctl.errors.link import ReplyTimeout
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 
 KINDS: tuple[type[Any], ...] = (
@@ -66,7 +66,7 @@ def test_what_is_asked_of_each_kind() -> None:
 
 @pytest.mark.parametrize("file", ["deck.toml", "antenna.toml", "insertion-pin.toml"])
 def test_every_driver_of_a_cell_is_behind_such_a_layer(file: str) -> None:
-    cell = Cell(load_cell(CELL_FILE.with_name(file)), CELL_FILE.parent)
+    cell = Cell(shipped_cell(file), CELL_FILE.parent)
     for device in cell._by_path().values():
         behind: Any = device
         while not isinstance(behind, PatientDevice | PatientRobot):

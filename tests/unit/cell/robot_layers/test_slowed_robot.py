@@ -9,7 +9,6 @@ from cellctl.cell.robot_layers.slowed_robot import (
     SlowedRobot,
     SlowedStreamingRobot,
 )
-from cellctl.config import load_cell
 from cellctl.config.checks.robot_figures import robot_issues
 from cellctl.config.devices import MaintenanceSpeeds
 from cellctl.errors.robot import TargetOutOfBounds
@@ -17,6 +16,7 @@ from cellctl.interfaces import StreamLimits
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from tests.contracts.inprocess.streaming_robot import PERIOD_S, InProcessStreamingRobot
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 from tests.unit.cell.robots import StillRobot
 from tests.unit.daemon_fixtures import bench, rig
@@ -66,7 +66,7 @@ async def test_a_stream_that_was_made_for_more_is_refused() -> None:
 
 
 def test_the_cell_file_says_so_for_one_robot() -> None:
-    config = load_cell(CELL_FILE)
+    config = shipped_cell(CELL_FILE.name)
     main = config.robots["main"].model_copy(update={"in_maintenance": SLOW})
     slower = config.model_copy(update={"robots": {**config.robots, "main": main}})
     cell = Cell(slower, CELL_FILE.parent)
@@ -75,7 +75,7 @@ def test_the_cell_file_says_so_for_one_robot() -> None:
 
 
 def test_maintenance_is_never_the_faster_mode() -> None:
-    config = load_cell(CELL_FILE)
+    config = shipped_cell(CELL_FILE.name)
     fast = MaintenanceSpeeds(speed_percent=41, linear_speed_mm_s=51.0)
     main = config.robots["main"].model_copy(update={"in_maintenance": fast})
     robots = {**config.robots, "main": main}

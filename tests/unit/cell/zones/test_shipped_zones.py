@@ -7,18 +7,19 @@ import pytest
 
 from cellctl.cell.devices import Cell
 from cellctl.cell.zones.zoned_robot import ZonedRobot, ZonedStreamingRobot, zoned_robots
-from cellctl.config import CellConfig, load_cell
+from cellctl.config import CellConfig
 from cellctl.config.driver_settings import robot_driver
 from cellctl.errors.robot import ZoneTaken
 from cellctl.geometry.pose import Array
 from cellctl.processes.deck_to_frame.settings import DeckSettings
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 from tests.unit.cell.robots import StillRobot
 
 
 @pytest.fixture(scope="module")
 def config() -> CellConfig:
-    return load_cell(CELL_FILE)
+    return shipped_cell(CELL_FILE.name)
 
 
 class Arms:

@@ -6,7 +6,6 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellctl.config import load_cell
 from cellctl.errors import CellError
 from cellctl.errors.config import (
     ArmNotDescribed,
@@ -16,9 +15,10 @@ from cellctl.errors.config import (
     SizeImplausible,
 )
 from cellctl.planning.model.read import read_model
+from tests.rigs.shipped import shipped_cell
 from tests.unit.planning.deck_cell import DECK, deck_scene, write_model
 
-CELL = load_cell(DECK)
+CELL = shipped_cell(DECK.name)
 DECK_BOX = "box = { size_mm = [1000.0, 500.0, 15.0], at = [0.0, 0.0, 509.5, 0.0, 0.0, 0.0] }"
 
 

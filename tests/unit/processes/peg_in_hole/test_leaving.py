@@ -9,7 +9,6 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.config.load import load_cell
 from cellctl.errors.force import LiftOffHeld
 from cellctl.errors.robot import MotionRejected
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
@@ -19,11 +18,11 @@ from cellctl.guard.limits import GuardLimits
 from cellctl.interfaces import Robot
 from cellctl.processes.peg_in_hole.leaving import CLEAR_OF_FACE_M, leave_hole, show_force_on_tip
 from cellctl.processes.peg_in_hole.stations import OVER, PegCell, peg_recipes
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
-from tests.unit.processes.antenna_module.steps.bench import CONFIG
 
-CELL = load_cell(CONFIG / "insertion-pin.toml")
+CELL = shipped_cell("insertion-pin.toml")
 
 
 class NewGuard(TinyGuard):

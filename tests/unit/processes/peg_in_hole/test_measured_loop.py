@@ -16,7 +16,6 @@ from cellctl.calibration.store.envelope import StoredCalibration, write_stored
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.cell.contact_motion.commissioning import CommissionedLoop, StepAnswer
 from cellctl.clock import utc_now
-from cellctl.config.load import load_cell
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.force.contact.streamed.gains import LoopFigures
 from cellctl.force.contact.streamed.identification import StiffnessFit
@@ -33,8 +32,9 @@ from cellctl.processes.peg_in_hole.record.loop_record import (
 from cellctl.processes.peg_in_hole.run import PegFacts
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import PegCell
+from tests.rigs.shipped import shipped_cell
 
-CELL = load_cell(Path(__file__).parents[4] / "config" / "insertion-pin.toml")
+CELL = shipped_cell("insertion-pin.toml")
 SETTINGS = cast(PegSettings, CELL.processes["peg-in-hole"])
 RECIPE = cast(PegRecipe, CELL.recipes[0])
 PEG_CELL = PegCell(None, None, SETTINGS)  # type: ignore[arg-type]  # figures alone

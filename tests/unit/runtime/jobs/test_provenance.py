@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.config import CellConfig, load_cell
+from cellctl.config import CellConfig
 from cellctl.config.load import cell_from_document
 from cellctl.errors.records import RecordNotWritten
 from cellctl.errors.vision import FeatureFileInvalid
@@ -18,6 +18,7 @@ from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.provenance import Provenance, provenance
 from cellctl.runtime.jobs.record import JobRecord
 from cellctl.version import software
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE, Bench, start_command
 
 
@@ -29,7 +30,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def config() -> CellConfig:
-    return load_cell(CELL_FILE)
+    return shipped_cell(CELL_FILE.name)
 
 
 def made_with(config: CellConfig, folder: Path) -> Provenance:

@@ -1,6 +1,5 @@
 """Ways of the arm through free air."""
 
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -8,11 +7,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config import load_cell
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.processes.antenna_module.moves.moving import Mover
+from tests.rigs.shipped import shipped_cell
 
-CELL = load_cell(Path("config/antenna.toml"))
+CELL = shipped_cell("antenna.toml")
 
 
 class Noting(Mover):

@@ -6,13 +6,13 @@ from typing import Any, cast
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.load import load_cell
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import ModuleInGripper
 from cellctl.processes.antenna_module.moves import start
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell
-from tests.unit.processes.antenna_module.steps.bench import CONFIG, TAUGHT, Bench
+from tests.rigs.shipped import shipped_cell
+from tests.unit.processes.antenna_module.steps.bench import TAUGHT, Bench
 
 OVER_TRAY = pose_from_xyzabc((450.0, 300.0, 365.0, 0.0, 0.0, 180.0))
 IN_SOCKET = pose_from_xyzabc((500.0, -200.0, 398.0, 0.0, 0.0, 180.0))
@@ -24,7 +24,7 @@ def cell_of(bench: Bench, *, opened: bool, part: bool) -> AntennaCell:
 
     made: Any = bench.run().cell
     made.gripper = SimpleNamespace(state=state, open=bench.open)
-    made.cell.config = load_cell(CONFIG / "antenna.toml")
+    made.cell.config = shipped_cell("antenna.toml")
     return cast(AntennaCell, made)
 
 

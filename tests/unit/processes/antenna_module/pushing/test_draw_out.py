@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.load import load_cell
 from cellctl.errors.force import LiftOffHeld
 from cellctl.errors.robot import MotionRejected
 from cellctl.geometry.pose import pose_from_xyzabc
@@ -23,12 +22,13 @@ from cellctl.processes.antenna_module.pushing.back_out import PULL_RATIO, SPEED_
 from cellctl.processes.antenna_module.pushing.draw_out import draw_out
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.stations import AntennaCell, antenna_recipes
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.cell.robots import StillRobot
 from tests.unit.processes.antenna_module.pushing.contact import SOCKET
 from tests.unit.processes.antenna_module.steps.bench import CONFIG
 
-CELL = load_cell(CONFIG / "antenna.toml")
+CELL = shipped_cell("antenna.toml")
 LIMITS = InsertionLimits.of(SOCKET)
 MAY_NEED_N = PULL_RATIO * LIMITS.greatest_n
 SEAT_PRESS_N = 27.0

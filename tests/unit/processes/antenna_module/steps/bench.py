@@ -15,7 +15,6 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import now_s
-from cellctl.config.load import load_cell
 from cellctl.errors.gripper import PartLost
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -39,6 +38,7 @@ from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.progress import ProgressBoard
 from tests.rigs.antenna.exact_cell import JOINTS_RAD, SEEN
 from tests.rigs.antenna.exact_cell import cell as exact_cell
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.guard import TinyGuard
 from tests.unit.processes.antenna_module.steps.notes import Notes
 from tests.unit.processes.antenna_module.steps.shown import connector_shown, seen_in
@@ -60,7 +60,7 @@ _G_M_S2 = 9.80665
 @cache
 def _shipped() -> tuple[AntennaRecipe, Drawings]:
     """Recipe and drawings of the fake cell; both are frozen."""
-    (recipe,) = antenna_recipes(load_cell(CONFIG / "antenna.toml"))
+    (recipe,) = antenna_recipes(shipped_cell("antenna.toml"))
     return recipe, read_drawings(recipe, CONFIG)
 
 

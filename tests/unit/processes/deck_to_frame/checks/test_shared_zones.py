@@ -1,15 +1,13 @@
 """Boxes of the heads' arms, however many zones each of them shares with the main arm."""
 
-from pathlib import Path
-
 import pytest
 
-from cellctl.config import load_cell
 from cellctl.config.zones import ZoneConfig, ZoneShare
 from cellctl.processes.deck_to_frame.checks.shared_zones import unlike_box_remarks
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from tests.rigs.shipped import shipped_cell
 
-CELL = load_cell(Path("config/deck.toml"))
+CELL = shipped_cell("deck.toml")
 BESIDE_1, BESIDE_2 = (CELL.zones[f"beside_head_{number}"] for number in (1, 2))
 
 

@@ -12,7 +12,6 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.config import load_cell
 from cellctl.errors.force import ForceLimitExceeded
 from cellctl.guard.client import GuardClient
 from cellctl.interfaces import Robot
@@ -27,6 +26,7 @@ from cellctl.runtime.interruption import Interruption
 from tests.rigs.mating.cell import MatingCell
 from tests.rigs.mating.simulated_loop import run_simulated
 from tests.rigs.mating.trial import nominal_settings, plan_for
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 
 LATENCY_S = 0.05
@@ -34,7 +34,7 @@ LATENCY_S = 0.05
 
 def cell_of(world: MatingCell) -> DeckCell:
     """A cell without heads and tracker, because nothing here looks."""
-    config = load_cell(CELL_FILE)
+    config = shipped_cell(CELL_FILE.name)
     cell = cast(Cell, SimpleNamespace(config=config, trips_awaited=lambda _: nullcontext()))
     robot, guard = cast(Robot, world.robot), cast(GuardClient, world.guard)
     arm = GuardedRobot(robot, config.robots["main"], "force", guard, config.force_sensors["force"])

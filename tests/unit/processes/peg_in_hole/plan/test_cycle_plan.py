@@ -1,6 +1,5 @@
 """What `cellctl check` says of a recipe, and the plan that is made of it."""
 
-from pathlib import Path
 from typing import Any, cast
 
 import numpy as np
@@ -8,7 +7,6 @@ import pytest
 from pydantic import ValidationError
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.load import load_cell
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.peg_in_hole.checks import recipe_issues
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
@@ -18,8 +16,9 @@ from cellctl.processes.peg_in_hole.run import PegFacts
 from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import PegCell, believed_frames, on_face, weight_of
+from tests.rigs.shipped import shipped_cell
 
-CELL = load_cell(Path(__file__).parents[5] / "config" / "insertion-pin.toml")
+CELL = shipped_cell("insertion-pin.toml")
 SETTINGS = cast(PegSettings, CELL.processes["peg-in-hole"])
 RECIPE = cast(PegRecipe, CELL.recipes[0])
 

@@ -8,33 +8,29 @@ from typing import cast
 import numpy as np
 import pytest
 
-from cellctl.config import load_cell
 from cellctl.config.model_file import model_path
-from cellctl.config.stated.moves import MoveKind, StatedMove
+from cellctl.config.stated.moves import MoveKind
 from cellctl.errors.config import ClearanceTooSmall
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.planning.model.read import read_model
+from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.ways.check_moves import check_move, stated_moves
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
+from tests.rigs.shipped import shipped_cell
 
 PIN, CONNECTOR = (Path(f"config/insertion-{name}.toml") for name in ("pin", "connector"))
 SCENE, CONNECTOR_SCENE = (
-    read_model(load_cell(file), model_path(file), file.parent) for file in (PIN, CONNECTOR)
+    read_model(shipped_cell(file.name), model_path(file), file.parent) for file in (PIN, CONNECTOR)
 )
 MOVES = list(stated_moves(SCENE))
 RECIPE = cast(PegRecipe, SCENE.cell.recipes[0])
 
 
-@pytest.mark.parametrize("move", MOVES, ids=lambda move: move.name)
-def test_every_move_of_the_shipped_cell_is_free(move: StatedMove) -> None:
-    checked = check_move(SCENE, move)
-    assert checked.fault is None, str(checked.fault)
-
-
-@pytest.mark.parametrize("move", list(stated_moves(CONNECTOR_SCENE)), ids=lambda move: move.name)
-def test_every_move_of_the_shipped_connector_cell_is_free(move: StatedMove) -> None:
-    checked = check_move(CONNECTOR_SCENE, move)
-    assert checked.fault is None, str(checked.fault)
+@pytest.mark.parametrize("scene", [SCENE, CONNECTOR_SCENE], ids=["pin", "connector"])
+def test_every_move_of_the_shipped_cells_is_free(scene: CellScene) -> None:
+    checked = {move.name: check_move(scene, move).fault for move in stated_moves(scene)}
+    assert checked
+    assert {name: str(fault) for name, fault in checked.items() if fault is not None} == {}
 
 
 def test_the_plug_may_meet_the_socket_in_an_approach_only() -> None:

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
-from cellctl.config.load import load_cell
 from cellctl.errors.base import CellError
 from cellctl.errors.force import ForceLimitExceeded
 from cellctl.force.contact.streamed.gains import LoopFigures
@@ -34,6 +33,7 @@ from cellctl.records.report.sections import Drawing, FactList
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.progress import ProgressBoard
+from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE
 from tests.unit.cell.contact_motion.elastic_world import (
     FRAMES,
@@ -48,7 +48,7 @@ from tests.unit.processes.peg_in_hole.tasks import pin
 from tests.unit.records.conftest import start
 
 STIFFNESS_N_M = 1e5
-(RECIPE,) = peg_recipes(load_cell(Path("config/insertion-pin.toml")))
+(RECIPE,) = peg_recipes(shipped_cell("insertion-pin.toml"))
 
 
 class Bench:
@@ -82,7 +82,7 @@ class Bench:
         return await self.store.do(RunStore.run, recorder.run)
 
     def _arm(self) -> SimpleNamespace:
-        sensor = load_cell(CELL_FILE).force_sensors["force"]
+        sensor = shipped_cell(CELL_FILE.name).force_sensors["force"]
         return SimpleNamespace(guard=self.world.guard, sensor=sensor)
 
     @asynccontextmanager
