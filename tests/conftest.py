@@ -23,9 +23,11 @@ _WHOLE_FILES = (
     "tests/unit/calibration/",  # rendered boards, solved cameras
     "tests/unit/cli/",  # rendered images, fake cells that stand for all tests of a file
     "tests/unit/fakes/scenes/",
+    "tests/unit/fakes/test_imperfections.py",  # what is seen without any
     "tests/unit/planning/views/",  # a measurement planned
     "tests/unit/processes/antenna_module/",  # rendered connectors, what was taught
     "tests/unit/processes/deck_to_frame/mating/test_mate.py",  # a mating
+    "tests/unit/processes/deck_to_frame/report/test_report.py",  # drawings, a report
     "tests/unit/processes/deck_to_frame/test_shipped_calibration.py",
     "tests/unit/records/database/",  # sealed and migrated stores
     "tests/unit/records/report/test_pdf.py",  # a report

@@ -4,7 +4,7 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -206,7 +206,7 @@ def test_cheap_commands_run() -> None:
         assert done.exit_code == 0, (arguments, done.output)
 
 
-APPS = {
+APPS: dict[str, Callable[[], typer.Typer]] = {
     "cellctl": whole_app,
     "fakes": lambda: fakes_app,
     "demo": lambda: demo_app,

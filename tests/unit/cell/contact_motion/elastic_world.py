@@ -136,17 +136,20 @@ class WorldGuard(TinyGuard):
     def __init__(self, world: ElasticWorld) -> None:
         super().__init__()
         self._world, self._rng = world, np.random.default_rng(6)
+        self._sigma = np.repeat([world.sigma_n, world.sigma_n_m], 3)
         self._times: list[float] = []
         self._wrenches: list[Array] = []
 
     def publish(self, time_s: float, wrench: Array) -> None:
-        turned = Rotation.from_rotvec(self._world.tip[3:]).as_matrix()
         # Rows times a matrix: the inverse rotation.
-        felt = np.ravel(wrench.reshape(2, 3) @ turned @ _TASK_R_NOMINAL)
-        sigma = np.repeat([self._world.sigma_n, self._world.sigma_n_m], 3)
+        felt = wrench.reshape(2, 3)
+        if self._world.tip[3:].any():
+            felt = felt @ Rotation.from_rotvec(self._world.tip[3:]).as_matrix()
         self._times.append(time_s)
-        self._wrenches.append(felt + self._rng.normal(0.0, 1.0, 6) * sigma)
-        if np.abs(wrench[:3]).max() > self._greatest_n and self.trip is None:
+        self._wrenches.append(
+            np.ravel(felt @ _TASK_R_NOMINAL) + self._rng.normal(0.0, 1.0, 6) * self._sigma
+        )
+        if self.trip is None and np.abs(wrench[:3]).max() > self._greatest_n:
             self.trip = GuardTrip(TripReason.FILTERED_LIMIT, time_s, "force above its limit")
 
     @property

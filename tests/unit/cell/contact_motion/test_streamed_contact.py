@@ -99,7 +99,10 @@ def test_a_slide_that_falls_into_a_hole_ends_by_its_condition() -> None:
     assert 0.3e-3 < found.last.task_position_tip_m[0] < 1.3e-3
 
 
-@pytest.mark.parametrize(("stiffness_n_m", "limit_s"), [(1e5, 10.0), (1e6, 60.0)])
+@pytest.mark.parametrize(
+    ("stiffness_n_m", "limit_s"),
+    [(1e5, 10.0), pytest.param(1e6, 60.0, marks=pytest.mark.figures)],
+)
 def test_a_feed_gives_way_on_the_chamfer_and_ends_at_the_seat(
     stiffness_n_m: float, limit_s: float
 ) -> None:

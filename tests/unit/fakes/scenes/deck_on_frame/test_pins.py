@@ -71,7 +71,10 @@ def contact_energy(payload: Payload, gaps: np.ndarray) -> float:
     return suspension.energy(gaps) - springs
 
 
-@pytest.mark.parametrize("angle_deg", [0.0, 11.25, 45.0, 200.0])
+@pytest.mark.parametrize(
+    "angle_deg",
+    [11.25, *(pytest.param(one, marks=pytest.mark.figures) for one in (0.0, 45.0, 200.0))],
+)
 def test_the_wall_holds_what_lies_beyond_the_clearance(
     scenario: DeckScenario, angle_deg: float
 ) -> None:

@@ -189,6 +189,7 @@ def test_every_load_brings_another_hole_with_fresh_peaks() -> None:
     assert world.peaks.force_n[1] == 0.0
 
 
+@pytest.mark.figures
 def test_holes_lie_within_their_radius_as_often_as_the_scenario_says(
     scenario: SocketScenario,
 ) -> None:

@@ -142,7 +142,9 @@ class PlugArm:
         world.targets_mm.append(world.way.depth_of(target) * 1e3)
         begin, offset = world.flange, target.translation - world.flange.translation
         for share in np.linspace(0.0, 1.0, 21)[1:]:
-            world.go(RigidTransform.from_translation(offset * share) * begin)
+            matrix = begin.as_matrix()
+            matrix[:3, 3] += offset * share
+            world.go(RigidTransform(matrix, normalize=False))
             beyond = np.flatnonzero(np.abs(world.felt()) > self.guard.limit().filtered)
             if beyond.size:
                 component = int(beyond[0])

@@ -1,5 +1,8 @@
 """The way from the stand-off to the seat, and every way in which it ends early."""
 
+import asyncio
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
@@ -19,6 +22,7 @@ from cellctl.processes.antenna_module.pushing.push_in import push_in
 from tests.unit.processes.antenna_module.pushing.contact import (
     SOCKET,
     STAND_OFF_M,
+    PlugArm,
     PlugWorld,
     Push,
     Wrench,
@@ -28,40 +32,52 @@ from tests.unit.processes.antenna_module.pushing.contact import (
 STEP_M = 0.1e-3
 
 
-async def test_a_good_plug_is_pushed_to_its_seat_and_no_farther() -> None:
-    world = PlugWorld()
-    async with Push(world) as attempt:
-        depth_m = await push_in(attempt, STEP_M)
-        judged = judge_insertion(attempt.curve(), SOCKET)
-    assert depth_m == pytest.approx(2.5e-3, abs=0.06e-3)
-    assert judged.verdict is InsertionVerdict.SEATED
-    assert world.felt()[2] < 24.0 + 20.0
+@dataclass(frozen=True, slots=True, eq=False)
+class Pushed:
+    """A good plug that was pushed to its seat."""
+
+    world: PlugWorld
+    arm: PlugArm
+    depth_m: float
+    verdict: InsertionVerdict
+    entry_m_s: float
 
 
-async def test_no_move_is_longer_than_a_step_and_fine_near_the_seat() -> None:
-    world = PlugWorld()
-    async with Push(world) as attempt:
-        await push_in(attempt, STEP_M)
-    steps = np.diff(world.targets_mm)
+@pytest.fixture(scope="module")
+def pushed() -> Pushed:
+    async def push_it() -> Pushed:
+        world = PlugWorld()
+        push = Push(world)
+        async with push as attempt:
+            depth_m = await push_in(attempt, STEP_M)
+            verdict = judge_insertion(attempt.curve(), SOCKET).verdict
+            return Pushed(world, push.arm, depth_m, verdict, attempt.limits.entry_m_s)
+
+    return asyncio.run(push_it())
+
+
+def test_a_good_plug_is_pushed_to_its_seat_and_no_farther(pushed: Pushed) -> None:
+    assert pushed.depth_m == pytest.approx(2.5e-3, abs=0.06e-3)
+    assert pushed.verdict is InsertionVerdict.SEATED
+    assert pushed.world.felt()[2] < 24.0 + 20.0
+
+
+def test_no_move_is_longer_than_a_step_and_fine_near_the_seat(pushed: Pushed) -> None:
+    steps = np.diff(pushed.world.targets_mm)
     assert steps.max() <= 0.1 + 1e-6
-    ends = np.array(world.targets_mm[1:])
+    ends = np.array(pushed.world.targets_mm[1:])
     in_funnels = (ends > 0.001) & (ends < 0.499)
     assert steps[in_funnels].max() <= 0.03 + 1e-6
     near = ends > 2.36
     assert steps[near].max() <= 0.02 + 1e-6
 
 
-async def test_every_step_of_the_entry_is_as_slow_as_the_entry() -> None:
+def test_every_step_of_the_entry_is_as_slow_as_the_entry(pushed: Pushed) -> None:
     """Also the last one, which ends where the springs begin."""
-    world = PlugWorld()
-    push = Push(world)
-    async with push as attempt:
-        await push_in(attempt, STEP_M)
-        entry_m_s = attempt.limits.entry_m_s
-    ends_mm = world.targets_mm[1:]
-    assert len(ends_mm) == len(push.arm.speeds_m_s)
-    for end_mm, speed_m_s in zip(ends_mm, push.arm.speeds_m_s, strict=True):
-        assert (speed_m_s == entry_m_s) == (end_mm < 0.5 + 1e-6)
+    ends_mm = pushed.world.targets_mm[1:]
+    assert len(ends_mm) == len(pushed.arm.speeds_m_s)
+    for end_mm, speed_m_s in zip(ends_mm, pushed.arm.speeds_m_s, strict=True):
+        assert (speed_m_s == pushed.entry_m_s) == (end_mm < 0.5 + 1e-6)
 
 
 def pressing(begin_mm: float, n_per_mm: float, component: int = 2, lever_m: float = 0.0) -> Wrench:

@@ -40,6 +40,7 @@ def test_a_hole_whose_search_began_beside_it_is_found_again() -> None:
     assert [contact.name for contact in found.contacts if contact.state != "ok"] == []
 
 
+@pytest.mark.figures
 def test_errors_are_as_large_as_is_stated_of_them() -> None:
     squares = []
     for seed in range(8):
@@ -58,6 +59,7 @@ def test_a_yaw_that_is_known_to_no_better_than_0_02_degrees_is_refused() -> None
         measure_connector(given.pixels.plane, given.camera, given.plane, given.connector)
 
 
+@pytest.mark.figures
 @pytest.mark.parametrize("name", ["micro-d-15", pytest.param("d-sub-15", marks=pytest.mark.long)])
 def test_holes_beside_the_axis_are_not_drawn_towards_it(name: str) -> None:
     """The lit wall of a bore moves its rim by 1 µm a millimetre, alike in every socket."""

@@ -129,10 +129,10 @@ def test_the_record_holds_formula_curve_and_stiffness(seated: Seated) -> None:
 
 
 def test_the_commanded_travel_never_passes_its_bound() -> None:
-    cell = cell_of(seed=3)
+    cell = cell_of(seed=3, stop_latency_s=SOON_S)
     cell.world.faults.inject("no_frame")
     cell.world.rebuild()
-    plan = plan_for(cell, nominal_settings(LATENCY_S))
+    plan = plan_for(cell, nominal_settings(SOON_S))
     with pytest.raises(Exception, match="F523") as caught:
         mated(cell, plan)
     curve = caught.value.curve  # type: ignore[attr-defined]

@@ -4,7 +4,7 @@ import json
 import re
 import shutil
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from math import isclose
 from pathlib import Path
@@ -52,7 +52,7 @@ from cellctl.records.report.export import export_run
 from cellctl.records.report.sections import ReportTable
 from tests.rigs.grey import confusable
 from tests.unit.records.conftest import start
-from tests.unit.records.page import read, text_of
+from tests.unit.records.page import Checker, read, text_of
 from tests.unit.records.sample import SIGMA, force_curve, good_run
 
 
@@ -63,32 +63,39 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
     store.close()
 
 
-def test_figures_are_well_formed_and_always_the_same(store: RunStore) -> None:
-    record = store.run(good_run(store))
+@pytest.fixture(scope="module")
+def good(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[RunStore, int]]:
+    """A good run, which no test adds to, in its store."""
+    store = RunStore(tmp_path_factory.mktemp("good") / "runs")
+    yield store, good_run(store)
+    store.close()
+
+
+@pytest.fixture(scope="module")
+def drawn(good: tuple[RunStore, int]) -> dict[Callable[[], str], str]:
+    """Drawings of a good run, one with a gauge that is beyond its limit, by what draws each."""
+    store, run = good
+    record = store.run(run)
+    assert record.passes[0].worst_ratio > 1.0, "a point beyond its threshold is drawn too"
+    beyond = Gauge(datetime(2026, 1, 1, tzinfo=UTC), "P9", 5.70, "operator")
     curve = force_curve(seconds=2.0)
     drawings: tuple[Callable[[], str], ...] = (
         lambda: errors_by_pass(record.passes),
-        lambda: plug_gauges(record.gauges),
+        lambda: plug_gauges([*record.gauges, beyond]),
         lambda: force_by_time(curve, 35.0, 50.0),
-        lambda: force_by_travel(curve, None, None),
+        lambda: force_by_travel(curve, 35.0, 50.0),
     )
-    for draw in drawings:
-        drawing = draw()
+    return {draw: draw() for draw in drawings}
+
+
+def test_figures_are_well_formed_and_always_the_same(drawn: dict[Callable[[], str], str]) -> None:
+    for draw, drawing in drawn.items():
         assert ET.fromstring(drawing).tag.endswith("svg")
         assert drawing == draw()
 
 
-def test_every_drawing_can_be_read_in_a_grey_print(store: RunStore) -> None:
-    record = store.run(good_run(store))
-    beyond = Gauge(datetime(2026, 1, 1, tzinfo=UTC), "P9", 5.70, "operator")
-    first, *later = record.passes
-    assert first.worst_ratio > 1.0, "a point beyond its threshold is drawn too"
-    for drawing in (
-        errors_by_pass([first, *later]),
-        plug_gauges([*record.gauges, beyond]),
-        force_by_time(force_curve(seconds=2.0), 35.0, 50.0),
-        force_by_travel(force_curve(seconds=2.0), 35.0, 50.0),
-    ):
+def test_every_drawing_can_be_read_in_a_grey_print(drawn: dict[Callable[[], str], str]) -> None:
+    for drawing in drawn.values():
         assert confusable(drawing) == []
 
 
@@ -102,6 +109,7 @@ def test_curves_without_samples_or_travel_are_drawn() -> None:
     assert "<svg" in force_by_time(empty, 35.0, 50.0)
     unknown = ForceCurve(np.arange(3.0), np.ones((3, 6)), np.full(3, np.nan))
     assert "<svg" in force_by_time(unknown, 35.0, 50.0)
+    assert "<svg" in force_by_travel(force_curve(seconds=0.1), None, None), "without limits"
 
 
 def test_thinning_a_curve_keeps_its_peaks() -> None:
@@ -126,9 +134,22 @@ def test_a_recording_that_was_cut_is_shown_as_far_as_it_goes(
     assert "force 2" not in text
 
 
-def test_the_report_says_what_an_auditor_asks(store: RunStore, tmp_path: Path) -> None:
-    exported = tmp_path / "out"
-    page = read(export_run(store, good_run(store), exported, pages=pages))
+@dataclass(frozen=True, slots=True)
+class Exported:
+    """The report of a good run."""
+
+    folder: Path
+    page: Checker
+
+
+@pytest.fixture(scope="module")
+def exported(good: tuple[RunStore, int], tmp_path_factory: pytest.TempPathFactory) -> Exported:
+    folder = tmp_path_factory.mktemp("exported") / "out"
+    return Exported(folder, read(export_run(*good, folder, pages=pages)))
+
+
+def test_the_report_says_what_an_auditor_asks(exported: Exported) -> None:
+    page = exported.page
     text = " ".join(page.texts)
     for expected in (
         "SAT-0042", "Good part", "Simulated", "OP-7", "cellctl 0.1.0", "ab" * 32, "cd" * 32,
@@ -138,7 +159,7 @@ def test_the_report_says_what_an_auditor_asks(store: RunStore, tmp_path: Path) -
         assert expected in text, expected
     assert "script" not in page.tags
     local = [address for address in page.addresses if not address.startswith("#")]
-    assert all((exported / address).is_file() for address in local)
+    assert all((exported.folder / address).is_file() for address in local)
     assert len([a for a in local if a.endswith(".png")]) == 8
 
 
@@ -228,8 +249,8 @@ def replace_figures(record: RunRecord) -> RunRecord:
     return replace(record, figures=())
 
 
-def test_a_plus_minus_stands_for_u_and_for_limits_alone(store: RunStore, tmp_path: Path) -> None:
-    page = read(export_run(store, good_run(store), tmp_path, pages=pages))
+def test_a_plus_minus_stands_for_u_and_for_limits_alone(exported: Exported) -> None:
+    page = exported.page
     limits = {"± 0.05", "± 0.005"}
     found = {text for text in page.texts if "±" in text and "U" not in text}
     assert all(any(text.startswith(one) for one in limits) for text in found), found

@@ -102,7 +102,7 @@ async def test_a_search_that_finds_no_hole_keeps_its_path_and_leaves_the_face(
 ) -> None:
     bench = Bench(tmp_path, wall(STIFFNESS_N_M), monkeypatch)
     # A small region, which is soon searched.
-    bench.task = replace(bench.task, cell=replace(bench.task.cell, uncertainty_m=0.1e-3))
+    bench.task = replace(bench.task, cell=replace(bench.task.cell, uncertainty_m=0.05e-3))
     record = await bench.run()
     assert isinstance(bench.fault, HoleAbsent)
     assert len(record.document(keys.TRACE)["points"]) >= 1

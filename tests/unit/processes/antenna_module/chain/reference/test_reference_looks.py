@@ -99,12 +99,24 @@ def test_the_noise_of_the_arm_alone_is_no_fault_and_seldom_in_doubt() -> None:
         ({"plate_1": -D}, FlangeCameraMoved),
     ],
 )
+@pytest.mark.figures
 def test_20_um_are_found_and_the_device_is_named(
     moved: Mapping[str, Array], fault: type[ReferenceMoved]
 ) -> None:
     found = [verdict(seed, moved)[0] for seed in range(400)]
     assert np.mean([one is not None for one in found]) >= 0.995
     assert np.mean([one is fault for one in found]) >= 0.95
+
+
+def test_each_device_that_has_moved_far_is_named() -> None:
+    far = 3 * D
+    for moved, fault in (
+        ({"axis": -far, "plate_2": -far}, FixedCameraMoved),
+        ({"marks": far}, GripperMarksMoved),
+        ({"plate_1": far, "plate_2": far}, ReferencePlateMoved),
+        ({"plate_1": -far}, FlangeCameraMoved),
+    ):
+        assert verdict(1, moved)[0] is fault
 
 
 def test_what_is_far_off_is_looked_at_once_more_and_what_is_near_the_limit_twice() -> None:
