@@ -150,8 +150,10 @@ class Payload:
     def _near(self, gaps: Array) -> bool:
         if self.touch is None:
             return False
-        points = self.touch.points
-        return min(points.distance(self._gaps), points.distance(gaps)) < _NEAR_M
+        distance = self.touch.points.distance
+        return distance(gaps) < _NEAR_M or (
+            gaps is not self._gaps and distance(self._gaps) < _NEAR_M
+        )
 
     def _gaps_at(self, flange: Array) -> Array:
         if self.touch is None:

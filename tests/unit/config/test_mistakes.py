@@ -2,11 +2,9 @@
 
 import json
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from _pytest.mark import ParameterSet
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
@@ -63,16 +61,7 @@ def test_there_are_more_than_sixty_half_by_somebody_else_and_all_differ() -> Non
     assert len(THIRD_DAY) >= 40
 
 
-def _cases() -> Iterator[ParameterSet]:
-    """All of them. To say which of the many figures of deck and antenna contradict each other takes
-    a third of the time of all the others, and is said by the same code of those of a peg."""
-    for one in ALL:
-        swept = one in SINGLE_FIGURES and one.file in ("antenna.toml", "deck.toml")
-        marks = (pytest.mark.figures,) if swept else ()
-        yield pytest.param(one, id=f"{one.file}-{one.key}", marks=marks)
-
-
-@pytest.mark.parametrize("mistake", _cases())
+@pytest.mark.parametrize("mistake", ALL, ids=lambda one: f"{one.file}-{one.key}")
 def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) -> None:
     path = written(tmp_path, mistake.file, mistake.old, mistake.new, mistake.features)
     found = problems_before_commissioning(path)

@@ -23,9 +23,9 @@ _SIGMAS = 20.0
 """A force that is compared with thresholds of a few standard deviations lies well above them."""
 
 
-def contact_bounds(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[Bound]:
-    """Offsets at which a pin no longer finds its hole; called with drawings that can be read."""
-    capture_mm = read_drawings(recipe, folder).socket.capture_m / MM
+def contact_bounds(recipe: AntennaRecipe, key: str, socket: Connector) -> Iterator[Bound]:
+    """Offsets at which a pin no longer finds its hole."""
+    capture_mm = socket.capture_m / MM
     why = "capture_mm of the socket's drawing: farther off a pin meets the face beside its hole"
     for name in ("worst_contact_mm", "seated_limit_mm"):
         yield Bound(f"{key}.{name}", float(getattr(recipe, name)), why, most=capture_mm)

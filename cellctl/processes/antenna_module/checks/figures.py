@@ -4,9 +4,10 @@ The plan predicts from these figures how far the worst contact may be off: an ar
 better than it is lets a plug be pushed in that does not fit.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import degrees
 from pathlib import Path
+from typing import Any
 
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
@@ -18,6 +19,7 @@ from cellctl.processes.antenna_module.chain.cell_figures import RP_OVER_SIGMA
 from cellctl.processes.antenna_module.roles import CAMERA_1, CAMERA_2
 from cellctl.processes.antenna_module.settings import AntennaSettings
 
+_CAMERAS = (CAMERA_1, CAMERA_2)
 _LEAST_RP_MM = 0.005
 """No data sheet of a six-axis arm promises less."""
 _ABSOLUTE_OVER_RP = 2.0
@@ -52,19 +54,23 @@ def arm_bounds(
     yield Bound(f"{where}.arm.drift_mm", figures.drift_mm, why, least=least_mm)
 
 
+def stored_cameras(cell: CellConfig, folder: Path) -> dict[str, Mapping[str, Any]]:
+    """The records of both cameras, of those that can be read."""
+    read = {name: readable_record(folder / cell.calibration_dir, name) for name in _CAMERAS}
+    return {name: record for name, record in read.items() if record is not None}
+
+
 def board_bounds(
-    cell: CellConfig, settings: AntennaSettings, where: str, folder: Path
+    settings: AntennaSettings, where: str, stored: Mapping[str, Mapping[str, Any]]
 ) -> Iterator[Bound]:
-    """A board that is too large or too small for the picture at its distance."""
+    """A board that is too large or too small for the picture at its distance; ``stored`` is what
+    ``stored_cameras`` gives."""
     columns, rows = (int(side) for side in settings.board.split("x"))
     key, square_mm = f"{where}.square_mm", settings.square_mm
     why = f"the corners of {settings.board} would span less than {_LEAST_SPAN_MM:g} mm"
     least_mm = _LEAST_SPAN_MM / (max(columns, rows) - 1)
     yield Bound(key, square_mm, why, least=least_mm)
-    for name in (CAMERA_1, CAMERA_2):
-        record = readable_record(folder / cell.calibration_dir, name)
-        if record is None:
-            continue
+    for name, record in stored.items():
         px_per_mm = record["camera_matrix"][0][0] / settings.board_distance_mm
         least_mm = _LEAST_SQUARE_PX / px_per_mm
         why = f"{_LEAST_SQUARE_PX:g} pixels of the stored {name} at board_distance_mm"
@@ -95,8 +101,8 @@ def board_remarks(
 ) -> Iterator[ConfigIssue]:
     """Another board than the one with which a camera was calibrated."""
     sides = [int(side) for side in settings.board.split("x")]
-    for name in (CAMERA_1, CAMERA_2):
-        board = (readable_record(folder / cell.calibration_dir, name) or {}).get("board", {})
+    for name, record in stored_cameras(cell, folder).items():
+        board = record.get("board", {})
         corners, square_mm = board.get("inner_corners"), board.get("square_mm")
         if corners is not None and (list(corners), square_mm) != (sides, settings.square_mm):
             said = (

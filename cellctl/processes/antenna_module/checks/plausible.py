@@ -1,10 +1,10 @@
 """Places of an antenna recipe that the arm cannot come to, and figures that no arm has."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import partial
 from math import degrees, dist
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound
@@ -21,8 +21,10 @@ from cellctl.processes.antenna_module.checks.drawn import (
     one_file_twice,
     pull_issues,
 )
-from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds
+from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds, stored_cameras
 from cellctl.processes.antenna_module.checks.looks import OVER, look_issues
+from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.drawings import read_drawings
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ARM, FORCE
 from cellctl.processes.antenna_module.settings import AntennaSettings
@@ -42,7 +44,10 @@ def plausible_issues(
     yield from one_file_twice(recipe, key, settings.reference, where)
     yield from force_issues(cell, recipe, key, folder)
     yield from pull_issues(cell, recipe, key)
-    yield from contradictions(cell, recipe, key, partial(_bounds, key=key, folder=folder))
+    # Read once: no other value of a figure, of which hundreds are tried, names other files.
+    socket, stored = read_drawings(recipe, folder).socket, stored_cameras(cell, folder)
+    bounds = partial(_bounds, key=key, socket=socket, stored=stored)
+    yield from contradictions(cell, recipe, key, bounds)
     yield from _marks(recipe, key)
     places = list(_places(cell, recipe, key))
     yield from places
@@ -51,13 +56,19 @@ def plausible_issues(
         yield from look_issues(cell, recipe, key)
 
 
-def _bounds(cell: CellConfig, recipe: Recipe, key: str, folder: Path) -> Iterator[Bound]:
+def _bounds(
+    cell: CellConfig,
+    recipe: Recipe,
+    key: str,
+    socket: Connector,
+    stored: Mapping[str, Mapping[str, Any]],
+) -> Iterator[Bound]:
     known, settings = cast(AntennaRecipe, recipe), _settings(cell, recipe)
     where = f"processes.{recipe.process}"
-    yield from contact_bounds(known, key, folder)
+    yield from contact_bounds(known, key, socket)
     yield from arm_bounds(cell, known.device(ARM), settings, where)
     yield from sensor_bounds(cell, known.device(FORCE), known.flange_T_plug)
-    yield from board_bounds(cell, settings, where, folder)
+    yield from board_bounds(settings, where, stored)
 
 
 def _settings(cell: CellConfig, recipe: Recipe) -> AntennaSettings:
