@@ -59,8 +59,13 @@ def test_a_yaw_that_is_known_to_no_better_than_0_02_degrees_is_refused() -> None
         measure_connector(given.pixels.plane, given.camera, given.plane, given.connector)
 
 
-@pytest.mark.figures
-@pytest.mark.parametrize("name", ["micro-d-15", pytest.param("d-sub-15", marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param("micro-d-15", marks=pytest.mark.figures),
+        pytest.param("d-sub-15", marks=pytest.mark.long),
+    ],
+)
 def test_holes_beside_the_axis_are_not_drawn_towards_it(name: str) -> None:
     """The lit wall of a bore moves its rim by 1 µm a millimetre, alike in every socket."""
     beside, along = [], []
