@@ -127,6 +127,9 @@ class Mating(Section):
     """Contact earlier or later than expected by more than this is a fault."""
     fast_speed_mm_s: Annotated[float, Field(gt=0, le=20)] = 5.0
     """Speed while contact is excluded; what vision has not seen is met at it."""
+    unexpected_force_n: Annotated[float, Field(ge=50, le=20_000), LessSafe.WITH_MORE] | None = None
+    """What deck, frame and gripper take without harm where ``fast_speed_mm_s`` meets a deck that is
+    thicker than stated: from their strength analysis. None: nobody says."""
     acceleration_mm_s2: Annotated[float, Field(gt=0, le=200)] = 20.0
     """Acceleration of all straight moves of the mating: its inertia has to stay far below a
     contact."""

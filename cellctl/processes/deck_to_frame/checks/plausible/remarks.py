@@ -69,7 +69,7 @@ def recipe_remarks(
     yield from _late(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
-    yield from load_remarks(cell, recipe)
+    yield from load_remarks(cell, recipe, key)
     yield from _taught_again(cell, recipe, folder)
     yield from unlike_box_remarks(cell, recipe)
     yield from tool_floor_remarks(cell, recipe.device(MAIN), recipe.flange_T_deck)

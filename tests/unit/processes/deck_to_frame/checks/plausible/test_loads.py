@@ -4,9 +4,10 @@ from pathlib import Path
 
 import pytest
 
+from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import load_cell
-from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues
+from cellctl.processes.deck_to_frame.checks.plausible.loads import load_issues, load_remarks
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
 CONFIG = Path(__file__).parents[6] / "config"
@@ -36,7 +37,7 @@ def test_a_heavy_load_must_begin_to_move_more_slowly() -> None:
 
 @pytest.mark.parametrize(
     ("speed_mm_s", "latency_ms", "most"),
-    [(10.0, 300.0, None), (12.0, 300.0, "10"), (5.0, 700.0, "4.3")],
+    [(9.5, 300.0, None), (12.0, 300.0, "9.5"), (5.0, 700.0, "4.1")],
 )
 def test_the_fast_travel_presses_no_more_than_the_sensor_carries_beside_the_weight(
     speed_mm_s: float, latency_ms: float, most: str | None
@@ -45,7 +46,11 @@ def test_the_fast_travel_presses_no_more_than_the_sensor_carries_beside_the_weig
     cell = load_cell(CONFIG / "deck.toml")
     (recipe,) = cell.recipes
     assert isinstance(recipe, DeckRecipe)
-    changed = {"fast_speed_mm_s": speed_mm_s, "stop_latency_ms": latency_ms}
+    changed = {
+        "fast_speed_mm_s": speed_mm_s,
+        "stop_latency_ms": latency_ms,
+        "unexpected_force_n": None,
+    }
     mating = recipe.mating.model_copy(update=changed)
     issues = list(load_issues(cell, recipe.model_copy(update={"mating": mating}), "recipes[1]"))
     if most is None:
@@ -54,3 +59,37 @@ def test_the_fast_travel_presses_no_more_than_the_sensor_carries_beside_the_weig
     (issue,) = issues
     assert issue.key == "recipes[1].mating.fast_speed_mm_s"
     assert issue.allowed.startswith(f"at most {most}: a deck that is thicker than stated")
+
+
+def with_mating(**changed: float | None) -> tuple[CellConfig, DeckRecipe]:
+    cell = load_cell(CONFIG / "deck.toml")
+    (recipe,) = cell.recipes
+    assert isinstance(recipe, DeckRecipe)
+    mating = recipe.mating.model_copy(update=changed)
+    return cell, recipe.model_copy(update={"mating": mating})
+
+
+@pytest.mark.parametrize(
+    ("carried_n", "speed_mm_s", "most"),
+    # 20 N and 1.05 times 1000 N/mm times 0.3 s times the speed
+    [(1600.0, 5.0, None), (1590.0, 5.0, "4.9"), (650.0, 5.0, "2"), (650.0, 2.0, None)],
+)
+def test_the_fast_travel_presses_no_more_than_the_parts_take(
+    carried_n: float, speed_mm_s: float, most: str | None
+) -> None:
+    cell, recipe = with_mating(unexpected_force_n=carried_n, fast_speed_mm_s=speed_mm_s)
+    issues = list(load_issues(cell, recipe, "recipes[1]"))
+    if most is None:
+        assert issues == []
+        return
+    (issue,) = issues
+    assert issue.key == "recipes[1].mating.fast_speed_mm_s"
+    assert issue.allowed.startswith(f"at most {most}: a deck that is thicker than stated")
+    assert issue.allowed.endswith(f"unexpected_force_n is {carried_n:.0f}")
+
+
+def test_what_the_parts_take_is_asked_for() -> None:
+    cell, recipe = with_mating(unexpected_force_n=None)
+    (remark,) = load_remarks(cell, recipe, "recipes[1]")
+    assert remark.key == "recipes[1].mating.unexpected_force_n"
+    assert "1595 N at fast_speed_mm_s" in remark.allowed
