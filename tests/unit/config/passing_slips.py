@@ -84,6 +84,7 @@ FIGURES = (
     Kind(
         "given up after one measurement, before any contact (F430)",
         ("recipes.pose_correction.max_iterations /10",),
+        remarked=True,
     ),
     Kind(
         "a hole or a face that vision knows so well; where it is not so, the search ends without "
@@ -96,6 +97,7 @@ FIGURES = (
     Kind(
         "a lighter load: the tare takes it at the attitude of the insertion, and light parts exist",
         ("recipes.load.mass_kg /10",),
+        remarked=True,
     ),
     Kind(
         "another module: it is weighed when it was picked, and refused then",

@@ -21,7 +21,12 @@ from cellctl.processes.antenna_module.checks.drawn import (
     one_file_twice,
     pull_issues,
 )
-from cellctl.processes.antenna_module.checks.figures import arm_bounds, board_bounds, stored_cameras
+from cellctl.processes.antenna_module.checks.figures import (
+    arm_bounds,
+    board_bounds,
+    gap_bounds,
+    stored_cameras,
+)
 from cellctl.processes.antenna_module.checks.looks import OVER, look_issues
 from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.drawings import read_drawings
@@ -69,6 +74,7 @@ def _bounds(
     yield from arm_bounds(cell, known.device(ARM), settings, where)
     yield from sensor_bounds(cell, known.device(FORCE), known.flange_T_plug)
     yield from board_bounds(settings, where, stored)
+    yield from gap_bounds(known, settings, key)
 
 
 def _settings(cell: CellConfig, recipe: Recipe) -> AntennaSettings:

@@ -39,9 +39,9 @@ millimetre is sharp over far less; stopped down, and with larger marks, over som
 def uncalibrated_remarks(
     cell: CellConfig, recipe: AntennaRecipe, folder: Path
 ) -> Iterator[ConfigIssue]:
-    """Looks that cannot both be in focus, as long as nothing measured says which is wrong."""
-    if _lacks(cell, folder, _FLANGE_CAMERA):
-        yield from _out_of_focus(cell, recipe)
+    """Looks that cannot be in focus together, and places that differ as long as nothing measured
+    says which is wrong."""
+    yield from _out_of_focus(cell, recipe, is_measured=not _lacks(cell, folder, _FLANGE_CAMERA))
     if _lacks(cell, folder, _FIXED_CAMERA):
         yield from _two_places(cell, recipe)
 
@@ -69,8 +69,13 @@ def _lacks(cell: CellConfig, folder: Path, kind: str) -> bool:
     return readable_record(folder / cell.calibration_dir, kind) is None
 
 
-def _out_of_focus(cell: CellConfig, recipe: AntennaRecipe) -> Iterator[ConfigIssue]:
-    """Camera I much nearer to tray, socket or plate than to its board, or much farther."""
+def _out_of_focus(
+    cell: CellConfig, recipe: AntennaRecipe, *, is_measured: bool
+) -> Iterator[ConfigIssue]:
+    """Camera I much nearer to tray, socket or plate than to its board, or much farther.
+
+    A mounting that is measured is held against its drawing elsewhere, so the board is named then.
+    """
     name, settings = recipe.device(CAMERA_1), _settings(cell, recipe)
     written = cell.cameras[name].flange_T_camera
     if written is None:
@@ -92,7 +97,11 @@ def _out_of_focus(cell: CellConfig, recipe: AntennaRecipe) -> Iterator[ConfigIss
             f"{looks}, and board_distance_mm = {board_mm:g} from its board, by which it is "
             "focused; right if it is focused from one to the other"
         )
-        yield ConfigIssue(f"cameras.{name}.flange_T_camera", str(list(written)), said)
+        if is_measured:
+            where = f"processes.{recipe.process}.board_distance_mm"
+            yield ConfigIssue(where, f"{board_mm:g}", said)
+        else:
+            yield ConfigIssue(f"cameras.{name}.flange_T_camera", str(list(written)), said)
 
 
 def _two_places(cell: CellConfig, recipe: AntennaRecipe) -> Iterator[ConfigIssue]:

@@ -1,21 +1,26 @@
 """What may be meant as it stands in a recipe of this process, and is worth a second look."""
 
 from collections.abc import Iterator
+from math import pi
 from pathlib import Path
 from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.checks.over_places import unmeasured_height
+from cellctl.config.checks.sensor_places import straight_mm
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.plausible.loop import soft_arm
 from cellctl.processes.peg_in_hole.plausible.stream import over_hole
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
-from cellctl.processes.peg_in_hole.roles import ARM
+from cellctl.processes.peg_in_hole.roles import ARM, FORCE
 from cellctl.processes.peg_in_hole.settings import PegSettings
 
 _WIDE_MM, _WIDE_SHARE = 0.1, 0.02
 """Radial clearance of the widest usual fits: so much, and so much of the radius."""
+_SLENDER_MM = 25.0
+"""Diameter of a bar that is slenderer than grippers are; fingers and their bodies are wider."""
+_ALUMINIUM_KG_MM3, _STEEL_KG_MM3 = 2.7e-6, 7.85e-6
 
 
 def recipe_remarks(
@@ -46,6 +51,30 @@ def recipe_remarks(
     if recipe.seat.grip_n is None:
         said = "nothing is called inserted without it: measure at which force the part slips"
         yield ConfigIssue(f"{key}.seat.grip_n", "(missing)", said)
+    yield from _light(cell, recipe, key)
     yield from unmeasured_height(cell, over_hole(recipe, key))
     yield from soft_arm(cell, recipe, settings, folder)
     yield from tool_floor_remarks(cell, recipe.device(ARM), recipe.flange_T_tip)
+
+
+def _light(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[ConfigIssue]:
+    """A load that hardly anything weighs which reaches from the sensor to the tip.
+
+    Nothing of the process weighs it: the zero is taken upright, and a part that is tilted in the
+    search shows what is missing as a push to the side.
+    """
+    reach_mm = straight_mm(recipe.flange_T_tip)
+    if reach_mm is None:
+        return
+    long_mm = reach_mm - cell.force_sensors[recipe.device(FORCE)].flange_T_sensor[2]
+    least_kg = _ALUMINIUM_KG_MM3 * pi / 4.0 * _SLENDER_MM**2 * long_mm
+    if recipe.load.mass_kg < least_kg:
+        fit = recipe.fit
+        part_kg = _STEEL_KG_MM3 * pi * fit.peg_radius_mm**2 * fit.depth_mm
+        said = (
+            f"gripper and part together, in kg; a bar of aluminium of {_SLENDER_MM:g} mm from the "
+            f"sensor to the tip ({long_mm:g} mm) weighs {least_kg:.2f}, and a steel part of "
+            f"peg_radius_mm and depth_mm alone {part_kg:.2g}. What is missing acts as a push when "
+            "the search tilts the part: weigh it; right if the tool is so light"
+        )
+        yield ConfigIssue(f"{key}.load.mass_kg", f"{recipe.load.mass_kg:g}", said)

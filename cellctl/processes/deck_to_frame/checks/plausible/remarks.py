@@ -67,6 +67,7 @@ def recipe_remarks(
     yield from _thickness_once(recipe, key, deck)
     yield from _compared(recipe, key)
     yield from _late(recipe, key)
+    yield from _corrections(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
     yield from load_remarks(cell, recipe, key)
@@ -149,6 +150,26 @@ def _late(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
             f"{_USUAL_WINDOW_MM:g} mm is seldom meant"
         )
         yield ConfigIssue(f"{key}.mating.contact_window_mm", f"{mating.contact_window_mm:g}", said)
+
+
+def _corrections(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
+    """A loop that cannot converge, and a limit that another one always precedes."""
+    correction, where = recipe.pose_correction, f"{key}.pose_correction"
+    if correction.max_iterations == 1:
+        said = (
+            "the loop is given up after one correction (F430), also of a deck that a second one "
+            "would bring to its thresholds; right for a trial of the first"
+        )
+        yield ConfigIssue(f"{where}.max_iterations", "1", said)
+    for unit in ("mm", "deg"):
+        largest = float(getattr(correction, f"max_correction_{unit}"))
+        allowed = 2.0 * float(getattr(recipe, f"station_tolerance_{unit}"))
+        if largest > allowed:
+            said = (
+                f"it stops nothing: frame and deck that are each within station_tolerance_{unit} "
+                f"differ by at most {allowed:g}; a smaller one finds a wrong measurement"
+            )
+            yield ConfigIssue(f"{where}.max_correction_{unit}", f"{largest:g}", said)
 
 
 def _board(cell: CellConfig, recipe: DeckRecipe, folder: Path) -> Iterator[ConfigIssue]:
