@@ -13,7 +13,7 @@ from cellctl.calibration.solvers.single_camera.single_camera_calibration import 
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from tests.rigs.calibration.circle_boards import GRID, STAGGERED, head, seen_by_both, seen_grid
 
-HEAD = head(3.0)
+HEAD = head()
 LEFT = np.array([*HEAD.left.focal_px, *HEAD.left.centre_px, *HEAD.left.distortion])
 
 # Both kinds of grid are detected and solved here, but not each by both solvers: to render the
