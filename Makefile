@@ -217,7 +217,8 @@ test-cell: venv
 # Accuracy over many draws and sweeps over every key: what holds for all code, at more seconds than
 # whoever changes one part of it will wait. `.ci/run` runs them after `make test`.
 test-figures: venv
-	$(BIN)/pytest -n 3 -m "figures" --durations 25
+	$(BIN)/pytest -n 3 -m "figures and not cell and not long" --durations 25 || \
+		$(BIN)/pytest -m "figures and not cell and not long" $(AGAIN)
 
 # New examples, and ten times as many, for every test that draws its own.
 test-explore: venv
@@ -229,7 +230,7 @@ test-long: venv
 	rm -rf runs/faults-tenth
 	$(BIN)/python -m benchmarks.faults.campaign --tenth $(SEED) --out runs/faults-tenth
 
-# Leaves out the tests marked long. The figures of each program that the tests start are combined.
+# Leaves out the tests marked long, and takes those marked figures. The figures of each program that the tests start are combined.
 # Code that is being measured runs several times slower, hence the longer time limit, and a test that
 # fails must not cost the figures of all others: the report is printed in any case.
 # In pieces: make coverage-begin, then make coverage-add TESTS=tests/unit/guard as often as there are

@@ -170,8 +170,14 @@ class RunInterrupted(RecordsError):
 
     number = 821
     text = "A run was not closed before the daemon ended"
-    cause = "Told when the daemon starts: it was killed, the PC went down, or the disk took no end."
-    remedy = "Look at arm and part as the detail says; then Reset (Clear if Aborted) lifts it off."
+    cause = (
+        "Told when the daemon starts: it was killed, the PC went down, or the disk could not take "
+    )
+    cause += "the end of the run."
+    remedy = (
+        "Look at arm and part as the detail says; then Reset (in Aborted first Clear): it lifts "
+    )
+    remedy += "the arm off."
     reaction = Reaction.WARN
 
 
@@ -294,6 +300,8 @@ class FleetNotNamed(FleetError):
 
     number = 837
     text = "No usable address of a fleet database"
-    cause = "`[fleet]` in the cell file or `--store` is missing or wrong, or the password's file."
+    cause = (
+        "`[fleet]` in the cell file or `--store` is missing or wrong, or the password's file is."
+    )
     remedy = "Give `postgresql://USER@HOST:PORT/DATABASE` as `url` under `[fleet]` or as "
     remedy += "`--store`, and the password in a file or in `CELLCTL_FLEET_PASSWORD`."

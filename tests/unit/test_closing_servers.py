@@ -5,7 +5,6 @@ import gc
 import socket
 import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
 
 import pytest
 
@@ -13,12 +12,15 @@ TURNS = range(8)
 """asyncio needs five from a client's connection to the coroutine that serves it."""
 
 
-@contextmanager
+@pytest.fixture(autouse=True)
 def young_garbage() -> Iterator[None]:
     """What becomes garbage stays in the youngest generation, which is collected at no cost."""
+    gc.collect(0)
     gc.disable()
-    yield
-    gc.enable()
+    try:
+        yield
+    finally:
+        gc.enable()
 
 
 @pytest.mark.parametrize("turns", TURNS)
@@ -28,7 +30,7 @@ async def test_a_connection_that_nobody_serves_is_closed(turns: int) -> None:
     with socket.create_connection(server.sockets[0].getsockname()):
         for _ in range(turns):
             await asyncio.sleep(0)
-        with warnings.catch_warnings(record=True) as seen, young_garbage():
+        with warnings.catch_warnings(record=True) as seen:
             warnings.simplefilter("always")
             server.close()
             for _ in TURNS:

@@ -264,9 +264,9 @@ async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
     async with GigeHead("head", settings) as head:
         await head.grab()
         before = await descriptors(head, fakes.opened(LEFT))
-        # More failures than blocks that may wait for later images: how many of these there are
-        # depends on how soon the images before were let go of.
-        for _ in range(MOST_FREE + 1):
+        # Up to MOST_FREE blocks wait for later images, before and after: how many depends on how
+        # soon the images before were let go of.
+        for _ in range(2 * MOST_FREE + 1):
             fakes.inject(RIGHT, fault, 1)
             with pytest.raises((ImagesDamaged, ReplyTimeout)):
                 await head.grab()

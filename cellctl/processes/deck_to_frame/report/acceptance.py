@@ -104,8 +104,8 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
                 *_found(record, _MATING),
                 *not_measured(record, {key: _MATING[key] for key in _MATED}),
             ),
-            "in the axes of the deck, gravity removed; without U, because the certificate of the "
-            "force sensor is not part of the record",
+            "in the axes of the deck, gravity removed; without U, because nobody has evaluated an "
+            "uncertainty of the force sensor",
         ),
         RequirementGroup(
             "Deck at the stand-off, before mating",

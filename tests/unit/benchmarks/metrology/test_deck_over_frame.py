@@ -1,5 +1,7 @@
 """A quick part of ``benchmarks.metrology.deck_over_frame``: one cell, few frames."""
 
+from copy import deepcopy
+
 import numpy as np
 import pytest
 
@@ -51,6 +53,7 @@ def test_how_far_a_centre_jumps() -> None:
 
 @pytest.mark.figures
 def test_a_centre_that_jumps_is_judged(steady: Steady) -> None:
+    steady = deepcopy(steady)
     for rims in steady.rims.values():
         rims.errors.along_px[:] = [np.zeros(2)] * rims.errors.count
     assert judged(steady)[1]

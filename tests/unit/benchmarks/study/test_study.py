@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ from benchmarks.study.outcome import StudyOutcome
 from benchmarks.study.results import AnotherStudy, StudyResults, StudySource, source_digest
 from benchmarks.study.table import end, tables, values_of
 from cellctl.version import ROOT
+from tests.rigs.mating.trial import Trial
 
 SOURCE = StudySource("deck-loop", {}, "cellctl 0.1.0 (abc)", "00")
 
@@ -96,6 +98,16 @@ def test_tables_and_picture(tmp_path: Path) -> None:
     assert len(values_of("true_peak_n", found)) == 40
     draw(kind, found, tmp_path / "study.png")
     assert (tmp_path / "study.png").stat().st_size > 10_000
+
+
+def test_the_row_of_a_mating_has_the_figures_of_its_trial(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(drawn: Trial) -> Trial:
+        return replace(drawn, outcome="F522", text="Contact too early", true_peak_n=37.0)
+
+    monkeypatch.setattr("tests.rigs.mating.trial.run_trial", refused)
+    row = run_seed("deck-mating", 1, {})
+    assert (row["good"], row["fault"]) == (False, "F522 Contact too early")
+    assert row["figures"]["true_peak_n"] == 37.0
 
 
 @pytest.mark.figures

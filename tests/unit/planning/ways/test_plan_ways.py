@@ -73,7 +73,8 @@ def test_what_is_written_is_what_was_planned_and_the_file_is_still_a_good_one(
 
 @pytest.mark.long
 def test_the_same_seed_gives_the_same_way() -> None:
-    first, second = (main_way(deck_scene(), seed=3) for _ in range(2))
+    # Two scenes, for the first search may leave something in its own.
+    first, second = (main_way(deck_scene.__wrapped__(), seed=3) for _ in range(2))
     assert np.array_equal(first.joints_rad, second.joints_rad)
 
 

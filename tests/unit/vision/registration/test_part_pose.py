@@ -121,22 +121,23 @@ def test_too_few_holes() -> None:
         part_pose(head_1, head_2, None, HOLES)
 
 
-@pytest.mark.figures
-def test_the_misfit_is_of_its_expected_size_with_an_uncertain_transfer() -> None:
+@pytest.mark.parametrize("draws", [20, pytest.param(200, marks=pytest.mark.figures)])
+def test_the_misfit_is_of_its_expected_size_with_an_uncertain_transfer(draws: int) -> None:
     rng = np.random.default_rng(11)
     sigma = np.array([2e-5, 2e-5, 4e-5, 5e-5, 5e-5, 5e-5])
     known = UncertainPose(C1_T_C2, np.diag(sigma**2))
     found = []
-    for _ in range(200):
+    for _ in range(draws):
         noise, off = rng.normal(size=(6, 3)) * SIGMA_M, rng.normal(size=6) * sigma
         true = RigidTransform.from_components(
             C1_T_C2.translation + off[:3], Rotation.from_rotvec(off[3:]) * C1_T_C2.rotation
         )
         found.append(part_pose(*heads(noise, true), known, HOLES).misfit)
     assert {misfit.freedom for misfit in found} == {12}
-    # 200 values of 12 degrees of freedom: their mean scatters by 0.35.
-    assert np.mean([misfit.chi2 for misfit in found]) == pytest.approx(12.0, abs=1.2)
-    assert np.mean([misfit.growth > 1.0 for misfit in found]) < 0.05
+    # The mean of values of 12 degrees of freedom scatters by the root of 24 over their number.
+    scatter = np.sqrt(24.0 / draws)
+    assert np.mean([misfit.chi2 for misfit in found]) == pytest.approx(12.0, abs=3.4 * scatter)
+    assert np.sum([misfit.growth > 1.0 for misfit in found]) <= max(2, 0.05 * draws)
 
 
 def test_a_part_off_its_drawing_makes_the_pose_less_sure() -> None:

@@ -72,6 +72,7 @@ def test_heads_that_moved_hardly_move_the_deck() -> None:
 @pytest.mark.parametrize(
     "draws",
     [
+        10,
         pytest.param(50, marks=pytest.mark.figures),
         pytest.param(200, marks=pytest.mark.long),
     ],
@@ -87,7 +88,9 @@ def test_the_covariance_is_honest_whatever_the_heads_did(draws: int) -> None:
         freedom = result.misfit.freedom
     band = chi2(6 * len(squared)).interval(0.999)
     assert 0.9 * band[0] < sum(squared) < band[1]
-    assert np.mean(misfits) == pytest.approx(freedom, rel=0.05)
+    # The mean of so many values of chi-square scatters by sqrt(2 / (freedom draws)) of itself.
+    scatter = np.sqrt(2.0 / (freedom * draws))
+    assert np.mean(misfits) == pytest.approx(freedom, rel=max(0.05, 3.3 * scatter))
 
 
 @pytest.mark.parametrize(

@@ -40,16 +40,19 @@ def test_a_hole_whose_search_began_beside_it_is_found_again() -> None:
     assert [contact.name for contact in found.contacts if contact.state != "ok"] == []
 
 
-@pytest.mark.figures
-def test_errors_are_as_large_as_is_stated_of_them() -> None:
+@pytest.mark.parametrize(
+    ("seeds", "least", "most"),
+    [(2, 0.05, 4.0), pytest.param(8, 0.4, 2.2, marks=pytest.mark.figures)],
+)
+def test_errors_are_as_large_as_is_stated_of_them(seeds: int, least: float, most: float) -> None:
     squares = []
-    for seed in range(8):
+    for seed in range(seeds):
         given = trial(seed, replace(CLEAN, wall_light=0.5, um_per_px=(35.0, 35.0)))
         image, camera, plane = given.pixels.plane, given.camera, given.plane
         measured = outcome(given, partial(measure_connector, image, camera, plane, given.connector))
         assert not measured.fault
         squares.append(measured.nees / 3.0)
-    assert 0.4 < np.mean(squares) < 2.2
+    assert least < np.mean(squares) < most
 
 
 def test_a_yaw_that_is_known_to_no_better_than_0_02_degrees_is_refused() -> None:
