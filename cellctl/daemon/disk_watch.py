@@ -3,11 +3,11 @@
 import asyncio
 
 from cellctl.errors import CellError
-from cellctl.errors.records import RecordSilent
+from cellctl.errors.records import DiskNearlyFull, RecordSilent
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.files.disk_space import require_writable
 from cellctl.records.store import RunStore
-from cellctl.runtime.unit import UnitController
+from cellctl.runtime.unit import AT_REST, UnitController
 
 ANSWER_TIMEOUT_S = 10.0
 """A disk that is busy with raw images answers within a second or two."""
@@ -30,7 +30,9 @@ class DiskWatch:
         """Write once if a run is open, else ask for room; a fault goes to the machine."""
         run = self._unit.jobs.run_number
         if run is None:
-            await self._look_for_room(timeout_s)
+            # Not while an arm lifts off or drives home: what is asked here serves the next Start.
+            if self._unit.machine.state in AT_REST:
+                await self._look_for_room(timeout_s)
             return
         if run == self._told:
             return
@@ -53,7 +55,8 @@ class DiskWatch:
         self._asking = None
         known, fault = self._scarce, self._store.scarcity
         self._scarce = fault is not None
-        if fault is not None and not known:
+        # Any other fault of the disk is the business of the command that meets it.
+        if isinstance(fault, DiskNearlyFull) and not known:
             await self._unit.machine.fail(fault)
 
     async def _ask(self) -> None:

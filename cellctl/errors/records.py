@@ -170,14 +170,8 @@ class RunInterrupted(RecordsError):
 
     number = 821
     text = "A run was not closed before the daemon ended"
-    cause = (
-        "Told when the daemon starts: it was killed, the PC went down, or the disk could not take "
-    )
-    cause += "the end of the run."
-    remedy = (
-        "Look at arm and part as the detail says; then Reset (in Aborted first Clear): it lifts "
-    )
-    remedy += "the arm off."
+    cause = "Told at its start: it was killed, the PC went down, or the disk took no more writes."
+    remedy = "Look at arm and part as told; then Reset (in Aborted first Clear): it lifts off."
     reaction = Reaction.WARN
 
 
@@ -300,8 +294,6 @@ class FleetNotNamed(FleetError):
 
     number = 837
     text = "No usable address of a fleet database"
-    cause = (
-        "`[fleet]` in the cell file or `--store` is missing or wrong, or the password's file is."
-    )
+    cause = "`[fleet]` in the cell file, `--store` or the password's file is missing or wrong."
     remedy = "Give `postgresql://USER@HOST:PORT/DATABASE` as `url` under `[fleet]` or as "
     remedy += "`--store`, and the password in a file or in `CELLCTL_FLEET_PASSWORD`."

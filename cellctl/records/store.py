@@ -58,11 +58,11 @@ class RunStore(StoredRecords):
     def mark_interrupted(self) -> list[int]:
         """Become the owner and close what an earlier owner left open; the numbers of those runs.
 
-        A run whose end an earlier owner has kept is closed with it, and is not one of them. Raises
-        ``StoreInUse`` while another daemon lives.
+        A run whose end an earlier owner has kept is closed with that, any other as interrupted.
+        Raises ``StoreInUse`` while another daemon lives.
         """
         self._ownership.take()
-        interrupted = []
+        left_open = []
         with self._database.write() as session:
             found = rows.open_runs(session)
             for row in found:
@@ -73,13 +73,14 @@ class RunStore(StoredRecords):
                 if (end := self._ends.read(row.number)) is not None:
                     known = end.result, end.fault_number, end.fault
                     rows.close(session, row, *known, ended=end.ended)
-                    continue
-                rows.close(session, row, RunResult.INTERRUPTED, None, None)
-                interrupted.append(row.number)
+                else:
+                    rows.close(session, row, RunResult.INTERRUPTED, None, None)
+                # Both: the arm may press since then, and no alarm reached a disk that took nothing.
+                left_open.append(row.number)
         # Those of runs that were closed too: a daemon may die between storing and removing.
         self._unfinished.clear()
         self._ends.clear()
-        return interrupted
+        return left_open
 
     def keep_end(self, run: int, end: UnwrittenEnd) -> None:
         """Keep how a run ended that could not be closed; ``mark_interrupted`` closes it so."""

@@ -95,7 +95,7 @@ class UnitController:
         """Good parts since installation."""
 
     async def open(self) -> None:
-        """Close runs that an earlier process left open, as interrupted; take over its alarms.
+        """Close runs that an earlier process left open; take over its alarms.
 
         Raises the faults of the store, and ``CalibrationNotStored`` while no procedure could keep
         its result.

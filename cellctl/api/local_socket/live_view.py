@@ -149,12 +149,12 @@ class LiveView:
         # A wrench with the part's weight still in it is no contact force: better none than that.
         weighed = sample is not None and guard.gravity_compensated
         stale = sample is not None and not is_present(sample, time_s)
-        known = sample is not None and weighed and not stale
-        wrench: list[float] = sample.wrench.tolist() if sample and known else [math.nan] * 6
-        # A zero that a Reset has taken in contact hides what it was pressed with.
-        felt = [*wrench[:2], wrench[2] + (guard.hidden_axial_n or 0.0)]
+        newest: list[float] = sample.wrench.tolist() if sample and weighed else [math.nan] * 6
+        # A zero that a Reset has taken in contact hides what it was pressed with. The warning that
+        # an arm may press rests on the newest sample, however old: silence does not end a contact.
+        felt = [*newest[:2], newest[2] + (guard.hidden_axial_n or 0.0)]
         # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
-        shown = wrench if guard.in_part_frame else [math.nan] * 6
+        shown = newest if guard.in_part_frame and not stale else [math.nan] * 6
         stopped = "" if guard.trip is None else str(guard.trip)
         awaited = self._unit.view.is_awaited_touch(name)
         return {

@@ -82,7 +82,7 @@ function force(force, index) {
     force.touch ? h("p", { class: "dim" }, `${t("touched")}: ${force.touch}`) : null,
     h("div", { class: "value live" }, `${shown(fz, 1)} N`, h("span", { class: "dim" }, ` / ${shown(force.limit_n, 0)} N`)),
     bar(fz, force.limit_n, true), plot(index, force.limit_n),
-    h("p", { class: "dim live force-axes" }, why ?? force.wrench.map((one) => h("span", {}, `${one.axis} ${shown(one.value, one.unit === "N" ? 1 : 2)} ${one.unit}`)))];
+    h("p", { class: `${force.stale ? "bad" : "dim"} live force-axes` }, why ?? force.wrench.map((one) => h("span", {}, `${one.axis} ${shown(one.value, one.unit === "N" ? 1 : 2)} ${one.unit}`)))];
 }
 
 function errors(s) {

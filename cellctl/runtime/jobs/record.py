@@ -26,8 +26,9 @@ from cellctl.version import software
 _log = log.get(__name__)
 
 CLOSE_PATIENCE_S = 120.0
-"""A run that is not closed counts as interrupted after the next start, also one that made a good
-part. Nothing moves meanwhile, so a backup that holds the store for a minute is waited for."""
+"""A run that is not closed is never good: the next start closes it with its fault, or as
+interrupted. Nothing moves meanwhile, so a backup that holds the store for a minute is waited
+for."""
 
 
 class JobRecord:

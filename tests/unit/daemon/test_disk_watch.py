@@ -120,3 +120,20 @@ async def test_the_probe_is_no_part_of_the_record(rig: DaemonRig, watch: DiskWat
     await in_contact(rig)
     await watch.look()
     assert await rig.archive.do(RunStore.verify) == []
+
+
+async def test_a_disk_that_cannot_be_asked_ends_nothing_and_nothing_is_asked_while_arms_move(
+    rig: DaemonRig, watch: DiskWatch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def gone(_: object) -> object:
+        raise OSError("stale file handle")
+
+    await rig.idle()
+    monkeypatch.setattr(shutil, "disk_usage", gone)
+    await watch.look()
+    assert rig.unit.machine.state is State.IDLE, "Start is refused, and nothing else happens"
+    assert not rig.shown().ready
+    monkeypatch.undo()
+    monkeypatch.setattr(disk_watch, "AT_REST", frozenset())
+    await watch.look()
+    assert not rig.shown().ready, "not asked"

@@ -96,6 +96,8 @@ def turns_agree(
     Shape (poses,).
     """
     count = len(turns)
+    if count < 2:
+        return np.ones(count, dtype=np.bool_)  # nothing to compare; that they are few is told later
     robot, camera = _between_all(turns, camera_T_board)
     off = np.zeros((count, count))
     off[np.triu_indices(count, 1)] = np.abs(

@@ -5,6 +5,7 @@ import json
 import os
 from typing import Any
 
+import numpy as np
 import pytest
 
 from cellctl.api.local_socket.live_feed import LiveFeed, as_line
@@ -28,6 +29,7 @@ from cellctl.api.local_socket.terminal import Terminal
 from cellctl.errors.link import LinkLost
 from cellctl.errors.local import NotThePage
 from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.runtime.cell_status import CellStatus
@@ -291,3 +293,17 @@ async def test_a_follower_that_does_not_read_delays_nobody_and_is_dropped(
         await tasks[0]
     tasks[1].cancel()
     await asyncio.gather(*tasks, return_exceptions=True)
+
+
+async def test_an_arm_that_pressed_when_its_sensor_fell_silent_may_press_still(
+    rig: DaemonRig, page: Page
+) -> None:
+    guard = rig.bench.cell.guard
+    guard.raw = np.tile([0.0, 0.0, -38.0, 0.0, 0.0, 0.0], (len(guard.raw), 1))
+    guard.silent_s = 25.0
+    await rig.unit.machine.command(Command.ABORT)
+    await rig.to(State.ABORTED)
+    (force,) = page.snapshot()["forces"]
+    assert force["stale"]
+    assert [axis["value"] for axis in force["wrench"]] == [None] * 6
+    assert force["presses_n"] == pytest.approx(38.0)

@@ -22,7 +22,7 @@ def test_the_next_start_closes_the_run_with_it(tmp_path: Path) -> None:
     store.keep_end(known, END)
     store.close()
     later = RunStore(tmp_path)
-    assert later.mark_interrupted() == [killed], "of the other nobody knows"
+    assert later.mark_interrupted() == [known, killed], "an arm may press since either"
     record = later.run(known)
     head = record.head
     assert (head.ended, head.result, head.fault_number) == (ENDED, RunResult.ABORTED, 704)

@@ -1,6 +1,7 @@
 """Holds the forces and stiffnesses of a recipe against the load that hangs on the arm."""
 
 from collections.abc import Iterator
+from math import floor, log10
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.plausible.loads import G_M_S2
@@ -89,14 +90,19 @@ def _fast_travel(
     if unexpected_n(mating) <= carried_n:
         return
     grows_n_per_mm_s = _OVERSHOOT * mating.stiffness_n_per_mm * mating.stop_latency_ms / 1e3
-    # Rounded down: what is named has to pass.
-    most_mm_s = int(10.0 * (carried_n - FAST_LIMIT_N) / grows_n_per_mm_s) / 10.0
+    most_mm_s = _rounded_down((carried_n - FAST_LIMIT_N) / grows_n_per_mm_s)
     allowed = (
         f"at most {most_mm_s:g}: a deck that is thicker than stated meets its frame on the fast "
         f"travel, and at this speed presses {unexpected_n(mating):.0f} N before the arm stands "
         f"(by stiffness_n_per_mm and stop_latency_ms); {words.format(carried_n)}"
     )
     yield ConfigIssue(f"{key}.mating.fast_speed_mm_s", f"{mating.fast_speed_mm_s:g}", allowed)
+
+
+def _rounded_down(speed_mm_s: float) -> float:
+    """To two digits: what is named has to pass."""
+    digit = 10.0 ** (floor(log10(speed_mm_s)) - 1)
+    return floor(speed_mm_s / digit) * digit
 
 
 def unexpected_n(mating: Mating) -> float:

@@ -72,7 +72,13 @@ def with_mating(**changed: float | None) -> tuple[CellConfig, DeckRecipe]:
 @pytest.mark.parametrize(
     ("carried_n", "speed_mm_s", "most"),
     # 20 N and 1.05 times 1000 N/mm times 0.3 s times the speed
-    [(1600.0, 5.0, None), (1590.0, 5.0, "4.9"), (650.0, 5.0, "2"), (650.0, 2.0, None)],
+    [
+        (1600.0, 5.0, None),
+        (1590.0, 5.0, "4.9"),
+        (650.0, 5.0, "2"),
+        (650.0, 2.0, None),
+        (50.0, 5.0, "0.095"),
+    ],
 )
 def test_the_fast_travel_presses_no_more_than_the_parts_take(
     carried_n: float, speed_mm_s: float, most: str | None
