@@ -17,7 +17,7 @@ pytest_plugins = ["tests.closing_servers", "tests.failed_again", "tests.machine_
 
 _WHOLE_CELLS = Path(__file__).parent / "cell"
 _WHOLE_FILES = (
-    "tests/contracts/",  # packages that are installed, fakes; they wait while others compute
+    "tests/contracts/test_writing_a_",  # packages that are installed for it
     "tests/programs/test_writing_a_process.py",
     "tests/unit/benchmarks/",  # runs whose figures several tests read
     "tests/unit/calibration/",  # rendered boards, solved cameras
@@ -32,7 +32,6 @@ _WHOLE_FILES = (
     "tests/unit/records/database/",  # sealed and migrated stores
     "tests/unit/records/report/test_pdf.py",  # a report
     "tests/unit/vision/",  # rendered images
-    "tests/wire/",  # fakes; they wait while others compute
 )
 """Files whose tests share what takes seconds to make; each worker would make it for itself."""
 _WHOLE_FOLDERS = (
