@@ -30,7 +30,8 @@ _HISTORY = (
     (
         8,
         "force_z has no value when the newest sample of the sensor is more than 1 s old, as after "
-        "the death of its guard. No address has moved",
+        "the death of its guard; status bit 6 is off while a calibration of any recipe is "
+        "invalidated. No address has moved",
     ),
 )
 _RESULTS = {

@@ -177,7 +177,10 @@ STATUS_BITS: tuple[tuple[str, str], ...] = (
         "heartbeat_lost",
         "plc_heartbeat stands still; off before its first change, when Reset is refused (0x101)",
     ),
-    ("calibration_ok", "every calibration that the recipe needs is valid"),
+    (
+        "calibration_ok",
+        "every calibration that production needs is valid, and none of any recipe is invalidated",
+    ),
     ("simulation", "the devices are simulated; no part of this cell is real"),
     ("manual", "a robot is not in remote mode"),
     (

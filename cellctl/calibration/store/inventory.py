@@ -7,6 +7,7 @@ from typing import Any
 
 from cellctl.calibration.store.envelope import StoredCalibration, read_calibration
 from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.calibration.store.marker import marked
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.errors import CellError
 
@@ -25,7 +26,10 @@ class InventoryEntry:
 
 
 def inventory(store: CalibrationStore, now: datetime) -> tuple[InventoryEntry, ...]:
-    """Every kind that production requires, missing ones too, then all others that are there."""
+    """Every kind that production requires, missing ones too, then all others that are there.
+
+    One of which only the marker is left counts as there: Start is refused for it.
+    """
     return tuple(_entry(store, kind, now) for kind in _kinds(store))
 
 
@@ -34,7 +38,7 @@ def _kinds(store: CalibrationStore) -> Iterator[CalibrationKind[Any]]:
     # First those that production waits for, so that an operator sees what is missing before what is
     # there besides.
     yield from required.values()
-    for name in store.names():
+    for name in sorted({*store.names(), *marked(store.path)}):
         if name not in required:
             yield store.named(name)
 

@@ -20,6 +20,14 @@ def marker(folder: Path, kind: str) -> Path:
     return folder / f"{kind}{SUFFIX}.json"
 
 
+def marked(folder: Path) -> list[str]:
+    """Names of all calibrations that were invalidated, sorted; also where only the marker is left.
+
+    Never raises.
+    """
+    return sorted(file.stem.removesuffix(SUFFIX) for file in folder.glob(f"*{SUFFIX}.json"))
+
+
 def mark_invalid(folder: Path, kind: str, reason: str, time: datetime) -> None:
     """Invalidate a calibration durably; raises ``CalibrationNotStored``.
 

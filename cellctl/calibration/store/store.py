@@ -21,7 +21,7 @@ from cellctl.calibration.store.marker import (
     SUFFIX,
     lift_invalidation,
     mark_invalid,
-    marker,
+    marked,
     require_not_invalidated,
 )
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
@@ -191,11 +191,15 @@ class CalibrationStore:
         return min((self._validity.hours(kind) for kind in required), default=math.inf)
 
     def all_valid(self, kinds: Kinds, planned: timedelta = timedelta(0)) -> bool:
-        """True when every required kind stays valid for longer than ``planned``, and none of the
-        others is invalidated; as ``least_h``."""
+        """True when every required kind stays valid for longer than ``planned``, and none that
+        production reads is invalidated; as ``least_h``.
+
+        With a kind of each recipe, that of no recipe is invalidated.
+        """
         kinds = list(kinds)
+        names = marked(self.path)
         invalidated = any(
-            kind.serves_production and marker(self.path, kind.name).exists() for kind in kinds
+            kind.serves_production and kind.includes(name) for kind in kinds for name in names
         )
         return not invalidated and self.least_h(kinds) > planned.total_seconds() / 3600
 

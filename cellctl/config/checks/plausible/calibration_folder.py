@@ -54,10 +54,12 @@ def _of_another_part(
                 same = part.get("process") == recipe.process and part.get("id") == recipe.id
                 if same and part.get("name") != recipe.name:
                     names = [name for of_process in known.values() for name in of_process]
+                    meant = _meant(cell, folder, names)
                     allowed = (
                         f"another folder than that of {file}: {_listed(own)} holds for the part of "
                         f"one recipe, and recipe {recipe.id} is {part.get('name')!r} there and "
-                        f"{recipe.name!r} here{_meant(cell, folder, names)}"
+                        f"{recipe.name!r} here; or take {file} away, if it is an older copy of "
+                        f"this one{meant}"
                     )
                     yield ConfigIssue(_KEY, repr(cell.calibration_dir), allowed)
                     return

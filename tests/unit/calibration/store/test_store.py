@@ -200,6 +200,19 @@ def test_a_better_figure_that_somebody_declared_wrong_is_not_replaced_by_a_bound
     assert store.fault([stiffness], HOUR) is None
 
 
+def test_the_line_learns_of_what_is_invalidated_of_any_recipe(store: CalibrationStore) -> None:
+    stiffness = CONTACT_STIFFNESS.for_recipe(2)
+    store.store(stiffness, {"verdict": "pass"}, "", HOUR)
+    assert store.all_valid(store.kinds)
+    store.invalidate([CONTACT_STIFFNESS], "F527")
+    assert not store.all_valid(store.kinds), "kinds without a recipe, as the status asks"
+    assert store.all_valid([CONTACT_STIFFNESS.for_recipe(1)]), "that of another part"
+    told = replace(CONTACT_STIFFNESS, serves_production=False)
+    assert store.all_valid([told])
+    store.store(stiffness, {"verdict": "pass"}, "", HOUR)
+    assert store.all_valid(store.kinds)
+
+
 def test_a_clock_that_was_set_back_is_not_believed(store: CalibrationStore) -> None:
     assert store.fault(CALIBRATIONS, HOUR, utc_now()) is None
     later = utc_now() + timedelta(hours=1)

@@ -60,6 +60,16 @@ def test_the_loop_of_another_part_is_refused(tmp_path: Path) -> None:
     assert found.allowed.endswith("did you mean 'insertion-pin-calibration'?")
 
 
+def test_an_older_copy_of_the_file_is_named_as_what_may_be_in_the_way(tmp_path: Path) -> None:
+    path = written(tmp_path, "insertion-pin.toml", 'name = "precision pin', 'name = "renamed pin')
+    shutil.copy(CONFIG / "insertion-pin.toml", tmp_path / "insertion-pin-old.toml")
+    found = [one.allowed for one in problems_before_commissioning(path)]
+    assert any(
+        "or take insertion-pin-old.toml away, if it is an older copy of this one" in allowed
+        for allowed in found
+    )
+
+
 def test_two_files_of_one_part_may_share_a_folder() -> None:
     for name in ("antenna-rpc.toml", "deck-jobs.toml"):
         assert problems_before_commissioning(CONFIG / name) == [], name
