@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from cellctl.records.entered.gauges import judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
-from cellctl.records.figures import verdicts
+from cellctl.records.figures import on_pages, verdicts
 from cellctl.records.outcome import outcome
 from cellctl.records.run_filter import RunFilter
 from cellctl.records.run_list import ListedRun, listed_runs
@@ -38,6 +38,7 @@ class ArchiveReader:
     async def run(self, number: int) -> dict[str, Any]:
         """One run with figures, passes, phases, alarms, gauges and names of its files.
 
+        Figures in the units of the report, as they stand beside it: mm, degrees, N/mm.
         Raises ``RunUnknown`` or ``StoreUnavailable``.
         """
 
@@ -53,7 +54,7 @@ class ArchiveReader:
                 "head": _head(record.head),
                 "part": part_verdict(record),
                 "figures": [
-                    _plain(asdict(one)) | {"verdict": said.get(one.key)}
+                    _plain(asdict(on_pages(one))) | {"verdict": said.get(one.key)}
                     for one in record.newest_figures.values()
                 ],
                 "passes": [_plain(asdict(one)) for one in record.passes],

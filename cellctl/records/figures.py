@@ -2,11 +2,11 @@
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from cellctl.records.entries import Figure, Verdict
-from cellctl.records.units import SIX, SIX_MM_DEG, without_unit, words
+from cellctl.records.units import SIX, SIX_MM_DEG, unit_on_pages, without_unit, words
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +45,22 @@ def is_undecided(value: float | None, limit: Limit, expanded: float | None) -> b
         return False
     bounds = (bound for bound in (limit.lower, limit.upper) if bound is not None)
     return any(abs(bound - value) < expanded for bound in bounds)
+
+
+def on_pages(figure: Figure) -> Figure:
+    """The same in the unit in which people read it, limits with the value."""
+    unit, factor = unit_on_pages(figure.unit)
+
+    def times(value: float | None) -> float | None:
+        return None if value is None else value * factor
+
+    return replace(
+        figure,
+        unit=unit,
+        value=times(figure.value),
+        lower=times(figure.lower),
+        upper=times(figure.upper),
+    )
 
 
 def verdicts(figures: Mapping[str, Figure]) -> Mapping[str, str]:

@@ -60,8 +60,8 @@ function used(head) {
 
 function within(lower, upper) {
   const given = (value) => typeof value === "number";
-  if (given(lower) && given(upper)) return `${lower} … ${upper}`;
-  return given(upper) ? `≤ ${upper}` : given(lower) ? `≥ ${lower}` : "—";
+  if (given(lower) && given(upper)) return `${shown(lower)} … ${shown(upper)}`;
+  return given(upper) ? `≤ ${shown(upper)}` : given(lower) ? `≥ ${shown(lower)}` : "—";
 }
 
 function figures(run) {

@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Iterator
+from math import radians
 from pathlib import Path
 
 import pytest
@@ -33,3 +34,22 @@ def test_figures_have_the_verdicts_that_report_and_terminal_show(store: RunStore
         f"angle_error{KNOWN_TO}": None,
         "peak_force": "fail",
     }
+
+
+def test_figures_have_the_units_of_the_report(store: RunStore) -> None:
+    run = start(store)
+    store.add(
+        run,
+        figure("tilt", radians(0.25), "rad", limit=Limit(upper=radians(0.5))),
+        figure("depth", 0.0041, "m", limit=Limit(0.004, 0.005)),
+        figure("stiffness", None, "N/m"),
+        figure("peak_force", 41.0, "N", limit=Limit(upper=50.0)),
+    )
+    told = asyncio.run(ArchiveReader(store.path).run(run))["figures"]
+    tilt, depth, stiffness, force = told
+    assert [one["unit"] for one in told] == ["°", "mm", "N/mm", "N"]
+    assert (tilt["value"], tilt["lower"]) == (pytest.approx(0.25), None)
+    assert tilt["upper"] == pytest.approx(0.5)
+    assert [depth[part] for part in ("value", "lower", "upper")] == pytest.approx([4.1, 4.0, 5.0])
+    assert stiffness["value"] is None
+    assert (force["value"], force["upper"], force["verdict"]) == (41.0, 50.0, "pass")

@@ -8,6 +8,7 @@ import pytest
 
 from cellctl.fault_catalogue import known_fault
 from cellctl.hmi.words.page_words import page_words
+from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import STATES
 
@@ -37,6 +38,14 @@ def test_the_languages_have_the_same_words_with_the_same_places() -> None:
     assert set(english) == set(chinese)
     for key, text in english.items():
         assert sorted(re.findall(r"{\d}", text)) == sorted(re.findall(r"{\d}", chinese[key])), key
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_manual_and_idle_ask_for_no_part(language: str) -> None:
+    words = texts(language)
+    assert words[f"next_IDLE_{Mode.MANUAL.name}"] != words["next_IDLE"]
+    for mode in (Mode.PRODUCTION, Mode.MAINTENANCE):
+        assert words[f"mode_{mode.name}"] in words[f"next_IDLE_{Mode.MANUAL.name}"]
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
