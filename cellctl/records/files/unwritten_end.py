@@ -19,7 +19,7 @@ _SUFFIX = ".end.json"
 
 @dataclass(frozen=True, slots=True)
 class UnwrittenEnd:
-    """What the record is closed with at the next start. Never good: its line was told otherwise."""
+    """What the record is closed with at the next start. Never good: the line was told ABORTED."""
 
     ended: datetime
     result: RunResult
@@ -59,7 +59,8 @@ class UnwrittenEnds:
     def clear(self) -> None:
         """Remove all of them: no run is open. Raises ``RecordNotWritten``."""
         try:
-            for path in self._folder.glob(f"*{_SUFFIX}"):
+            # A crash while one was written has left its draft.
+            for path in self._folder.glob(f"*{_SUFFIX}*"):
                 path.unlink(missing_ok=True)
         except OSError as error:
             raise RecordNotWritten(f"{self._folder}: {error.strerror}") from error

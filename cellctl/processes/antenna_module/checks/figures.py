@@ -67,7 +67,7 @@ def stored_cameras(cell: CellConfig, folder: Path) -> dict[str, Mapping[str, Any
 def gap_bounds(recipe: AntennaRecipe, settings: AntennaSettings, key: str) -> Iterator[Bound]:
     """A zero of the gap that no error of this arm explains.
 
-    It would call a module good that stands so far over its seat, and one bad that sits.
+    With it a module that stands that far above its seat is called good, and a seated one bad.
     """
     most_mm = _GAP_OVER_ABSOLUTE * settings.arm.absolute_error_mm
     why = (

@@ -47,6 +47,15 @@ def test_what_somebody_edited_is_no_end(tmp_path: Path, was: str, edited: str) -
     assert ends.read(1) is None
 
 
+def test_the_draft_of_a_crash_goes_with_the_others(tmp_path: Path) -> None:
+    ends = UnwrittenEnds(tmp_path)
+    ends.keep(1, END)
+    (tmp_path / "2.end.json.part").write_text("{")
+    (tmp_path / "3.mcap").write_text("a recording, which is removed by its own")
+    ends.clear()
+    assert [file.name for file in tmp_path.iterdir()] == ["3.mcap"]
+
+
 def test_a_disk_that_takes_nothing_is_a_fault(tmp_path: Path) -> None:
     (tmp_path / "ends").write_text("no folder")
     with pytest.raises(RecordNotWritten, match="end of run 1"):
