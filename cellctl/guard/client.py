@@ -67,7 +67,7 @@ class GuardClient:
         self._trip: GuardTrip | None = None
         self._fault: CellError | None = None
         """Why the guard could not start, or gave up its sensor."""
-        self.serial = ""  # serial number and firmware, as the sensor's driver says them
+        self._serial = ""  # serial number and firmware, as the sensor's driver says them
         self._degraded: tuple[str, ...] = ()
         self._gravity_compensation: Message | None = None
         self.hidden_axial_n: float | None = None  # by the zero; None: nobody has taken one
@@ -100,8 +100,8 @@ class GuardClient:
             self._fault = error if isinstance(error, CellError) else None
             raise
         for measure in self._degraded:
-            _log.warning("guard runs degraded", measure=measure, sensor=self.serial)
-        _log.info("guard runs", pid=self._child.pid, sensor=self.serial)
+            _log.warning("guard runs degraded", measure=measure, sensor=self._serial)
+        _log.info("guard runs", pid=self._child.pid, sensor=self._serial)
 
     async def stop(self) -> None:
         """End the guard, which stops the robot. Idempotent."""
@@ -220,7 +220,7 @@ class GuardClient:
         """How the guard is doing; never raises."""
         child = self._child
         status = child.reader.status() if child is not None and child.alive else None
-        return GuardHealth.from_status(status, now_s(), self.serial, self._degraded)
+        return GuardHealth.from_status(status, now_s(), self._serial, self._degraded)
 
     def check(self) -> None:
         """Raise the fault of a guard that is dead or hangs, or has lost sensor or robot."""
@@ -256,7 +256,7 @@ class GuardClient:
         if event == "trip":
             self._latch(trip_from_json(message["trip"]))
         elif event == "ready":
-            self.serial, self._degraded = message["serial"], tuple(message["degraded"])
+            self._serial, self._degraded = message["serial"], tuple(message["degraded"])
             # With a channel ``start`` goes on waiting, for the event that tells of the channel.
             if not message["has_channel"]:
                 self._settle_start(None)
@@ -264,7 +264,7 @@ class GuardClient:
             self._take_channel(up=message["up"], fault=message["fault"])
         else:
             self._fault = fault_from_json(message)
-            _log.error("guard reports a fault", fault=str(self._fault), sensor=self.serial)
+            _log.error("guard reports a fault", fault=str(self._fault), sensor=self._serial)
             self._settle_start(self._fault)
 
     def _take_channel(self, *, up: bool, fault: Message | None) -> None:
@@ -272,7 +272,7 @@ class GuardClient:
             self._settle_start(None)
         elif fault is not None:
             reason = fault_from_json(fault)
-            _log.warning("stop channel is down", fault=str(reason), sensor=self.serial)
+            _log.warning("stop channel is down", fault=str(reason), sensor=self._serial)
             self._settle_start(reason)
 
     def _settle_start(self, fault: CellError | None) -> None:
@@ -289,7 +289,7 @@ class GuardClient:
         # The death stays until it is acknowledged: it is the reason why there is no guard.
         if self._trip is None or self._trip.reason is not TripReason.GUARD_DIED:
             self._trip = trip
-        _log.warning("guard has stopped the robot", trip=str(trip), sensor=self.serial)
+        _log.warning("guard has stopped the robot", trip=str(trip), sensor=self._serial)
 
     def _died(self, how: str) -> None:
         self._settle_start(GuardDied(how))

@@ -109,7 +109,7 @@ def run_row(head: RunHead, *, spoilt: bool, wide: bool) -> tuple[str | Text, ...
         head.serial + mark,
         head.recipe_name,
         *((head.process,) if wide else ()),
-        head.mode.lower(),
+        head.mode,
         f"{head.started:%Y-%m-%d %H:%M}",
         duration(head.started, head.ended),
         Text(result, style=_COLOURS.get(result, "red")),

@@ -121,7 +121,7 @@ def figure_history(
         select(RunRow, FigureRow)
         .join(FigureRow, FigureRow.run == RunRow.number)
         .where(FigureRow.id.in_(last), RunRow.ended.is_not(None))
-        .where(func.lower(RunRow.mode) == PRODUCTION)
+        .where(RunRow.mode == PRODUCTION)
         .order_by(RunRow.number.desc())
         .limit(limit)
     )

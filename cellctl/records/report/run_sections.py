@@ -13,8 +13,7 @@ from cellctl.records.entries import (
 )
 from cellctl.records.figures import NO_LIMIT
 from cellctl.records.looks import RIMS, TAKEN
-from cellctl.records.parts import PARTS
-from cellctl.records.report.acceptance.devices import TOLD
+from cellctl.records.parts import PARTS, TOLD
 from cellctl.records.report.sections import (
     FactList,
     Heading,

@@ -18,8 +18,9 @@ from cellctl.records.entries import (
     RunResult,
     Verdict,
 )
+from cellctl.records.parts import TOLD
 from cellctl.records.report import run_sections
-from cellctl.records.report.acceptance.devices import TOLD, devices
+from cellctl.records.report.acceptance.devices import devices
 from cellctl.records.report.acceptance.faults import (
     AlarmLine,
     FaultBox,
@@ -156,7 +157,7 @@ def _verdict(record: RunRecord) -> tuple[str, str]:
 
 def _of_production(record: RunRecord) -> bool:
     """Whether a part was made, and not something taught or measured with it."""
-    return record.head.mode.lower() == PRODUCTION
+    return record.head.mode == PRODUCTION
 
 
 def _filled(*sections: ReportSection) -> tuple[ReportSection, ...]:

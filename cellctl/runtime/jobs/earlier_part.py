@@ -9,15 +9,13 @@ from cellctl.errors.line import SerialMadeBefore
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import PRODUCTION, RunHead, RunResult
+from cellctl.records.parts import RUNS_OF_A_PART
 from cellctl.records.store import RunStore
 
 Warn = Callable[[CellError], Awaitable[None]]
 """Makes an alarm of a fault whose reaction is to warn."""
 _FINISHED = frozenset({RunResult.GOOD, RunResult.BAD})
 """A part whose run was stopped or aborted is begun anew with the same number, rightly."""
-_LOOKED_AT = 100
-"""Newest runs with the serial number that are looked at. A part is not begun a hundred times: the
-bound only keeps a number that stands for "unknown" from having all its runs read."""
 
 
 async def warn_of_earlier_part(
@@ -29,9 +27,9 @@ async def warn_of_earlier_part(
     that number anew leaves the one of the part before. ``run`` is the open run. It goes on: whoever
     reworks a part knows. Raises the faults of the store.
     """
-    found = {command.serial: await store.do(RunStore.runs, _LOOKED_AT, command.serial)}
+    found = {command.serial: await store.do(RunStore.runs, RUNS_OF_A_PART, command.serial)}
     if mate := command.mate_serial:
-        joined = await store.do(RunStore.runs, _LOOKED_AT, mate_serial=mate)
+        joined = await store.do(RunStore.runs, RUNS_OF_A_PART, mate_serial=mate)
         found[f"joined to {mate}"] = joined
     facts = [
         f"{what} {earlier}"

@@ -2,7 +2,7 @@
 
 from cellctl.cell.devices import Cell
 from cellctl.records.entries import Document
-from cellctl.records.report.acceptance.devices import TOLD
+from cellctl.records.parts import TOLD
 
 
 def told_devices(cell: Cell) -> Document:
@@ -15,5 +15,5 @@ def told_devices(cell: Cell) -> Document:
         name: ", ".join(f"{what} {said}" for what, said in robot.link_facts().items())
         for name, robot in cell.robots.items()
     }
-    sensors = {name: guard.serial for name, guard in cell.guards.items()}
+    sensors = {name: guard.health().sensor_serial for name, guard in cell.guards.items()}
     return Document(TOLD, {name: said for name, said in (robots | sensors).items() if said})

@@ -4,6 +4,7 @@ from pathlib import Path
 import pytest
 
 from cellctl.records import RunStore
+from cellctl.records.entries import PRODUCTION
 
 
 @pytest.fixture
@@ -17,7 +18,7 @@ def start(
     store: RunStore,
     serial: str = "SAT-0001",
     process: str = "deck-to-frame",
-    mode: str = "PRODUCTION",
+    mode: str = PRODUCTION,
 ) -> int:
     return store.start_run(
         process=process,

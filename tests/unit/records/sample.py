@@ -9,6 +9,7 @@ from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import (
+    PRODUCTION,
     Document,
     LoopPass,
     PassComponent,
@@ -139,7 +140,7 @@ def good_run(store: RunStore, picture: bytes = b"\x89PNG\r\n\x1a\n") -> int:
     run = store.start_run(
         process=PROCESS, serial="SAT-0042", recipe_id=1, recipe_name="panel 500 x 1000",
         recipe_hash="ab" * 32,
-        mode="PRODUCTION", software="cellctl 0.1.0", config_hash="cd" * 32,
+        mode=PRODUCTION, software="cellctl 0.1.0", config_hash="cd" * 32,
         calibration_ids=calibrations(store), simulated=True, operator="OP-7",
     )  # fmt: skip
     fill(store, run, picture)

@@ -8,8 +8,6 @@ from cellctl.records.report.sections import Note, ReportSection, ReportTable, Ta
 from cellctl.records.report.text import MISSING
 from cellctl.records.units import words
 
-TOLD = "devices.told"
-"""Key of the document with what robots and force sensors have said of themselves: texts by name."""
 _MEASURING = ("robots", "stereo_cameras", "cameras", "trackers", "force_sensors")
 """Tables of the cell file whose devices have a share in what is measured."""
 _COLUMNS = (

@@ -36,7 +36,7 @@ def identification(
         ("run", str(head.number)),
         ("process", head.process),
         ("recipe", f"{head.recipe_id} · {head.recipe_name}"),
-        ("mode", head.mode.lower()),
+        ("mode", head.mode),
         ("started", when(head.started)),
         ("ended", when(head.ended)),
         ("duration", duration(head.started, head.ended)),

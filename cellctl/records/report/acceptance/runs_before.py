@@ -7,14 +7,13 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 
 from cellctl.records.entries import PRODUCTION, RunHead
+from cellctl.records.parts import RUNS_OF_A_PART
 from cellctl.records.report.text import when
 
 if TYPE_CHECKING:
     # Lists of runs are shown without the database layer, which takes long to load.
     from cellctl.records.store import RunStore
 
-_LOOKED_AT = 100
-"""Newest runs with the serial number that are looked at, as for F742."""
 _NAMED = 6
 """That stand on a page one by one; of further ones their number is said."""
 
@@ -38,13 +37,11 @@ def runs_before(store: "RunStore", head: RunHead) -> tuple[RunBefore, ...]:
     Of the same store, and of any process and recipe: whatever has touched the part. A dry run ends
     before the first contact.
     """
-    if not head.serial or head.mode.lower() != PRODUCTION:
+    if not head.serial or head.mode != PRODUCTION:
         return ()
-    found = store.runs(_LOOKED_AT, head.serial)
+    found = store.runs(RUNS_OF_A_PART, head.serial)
     return tuple(
-        _of(store, one)
-        for one in found
-        if one.number < head.number and one.mode.lower() == PRODUCTION
+        _of(store, one) for one in found if one.number < head.number and one.mode == PRODUCTION
     )
 
 

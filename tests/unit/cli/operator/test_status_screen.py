@@ -26,7 +26,7 @@ def test_a_force_that_is_not_shown_says_why() -> None:
 def test_figures_of_a_run_that_has_ended_name_it() -> None:
     off = AxisReport(axis="x", unit="mm", value=8.0)
     ended = RunReport(
-        number=3, serial="PIN-2", recipe="pin", mode="PRODUCTION", started=utc_now(), result="bad"
+        number=3, serial="PIN-2", recipe="pin", mode="production", started=utc_now(), result="bad"
     )
     shows = {**AT_REST, "errors": (off,), "last_run": ended}
     rows = dict(_measured(StatusReport(**{**shows, "state": "ABORTED"})))

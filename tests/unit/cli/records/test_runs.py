@@ -178,7 +178,7 @@ def test_a_note_is_told_and_shown(runner: CliRunner, folder: str) -> None:
 def test_a_list_in_80_columns_cuts_nothing(
     runner: CliRunner, folder: str, store: RunStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    start(store, "PROCEDURE-10801", mode="MAINTENANCE")
+    start(store, "PROCEDURE-10801", mode="maintenance")
     dry = start(store, "SAT-0042", mode="dry run")
     store.close_run(dry, RunResult.BAD)
     monkeypatch.setenv("COLUMNS", "80")

@@ -4,8 +4,9 @@ from types import SimpleNamespace
 from typing import cast
 
 from cellctl.cell.devices import Cell
+from cellctl.guard.health import GuardHealth
 from cellctl.packml.state import State
-from cellctl.records.report.acceptance.devices import TOLD
+from cellctl.records.parts import TOLD
 from cellctl.runtime.jobs.told_devices import told_devices
 from tests.unit.daemon_rig import DaemonRig
 
@@ -16,8 +17,8 @@ def test_what_a_device_has_not_said_has_no_entry() -> None:
         "aux": SimpleNamespace(link_facts=dict),
     }
     guards = {
-        "force": SimpleNamespace(serial="S-12 (SFWV 1.2)"),
-        "other": SimpleNamespace(serial=""),
+        "force": SimpleNamespace(health=lambda: GuardHealth(True, sensor_serial="S-12 (SFWV 1.2)")),
+        "other": SimpleNamespace(health=lambda: GuardHealth(alive=True)),
     }
     document = told_devices(cast(Cell, SimpleNamespace(robots=robots, guards=guards)))
     assert document.key == TOLD
