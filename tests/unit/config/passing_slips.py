@@ -82,6 +82,11 @@ FIGURES = (
         ),
     ),
     Kind(
+        "what parts take is known to their drawings alone; beyond the sensor it never acts",
+        ("recipes.mating.unexpected_force_n x10",),
+        remarked=True,
+    ),
+    Kind(
         "given up after one measurement, before any contact (F430)",
         ("recipes.pose_correction.max_iterations /10",),
         remarked=True,

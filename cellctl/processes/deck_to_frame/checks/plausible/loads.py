@@ -78,9 +78,8 @@ def _fast_travel(
     """
     mating = recipe.mating
     carriers: dict[str, float] = {}
-    measuring = measuring_range(cell.force_sensors[recipe.device(FORCE)])
     # A sensor too weak for the weight itself is named by its own check.
-    if measuring and (left_n := min(measuring[:3]) - weighed_kg * G_M_S2) > FAST_LIMIT_N:
+    if (left_n := _sensor_left_n(cell, recipe, weighed_kg)) > FAST_LIMIT_N:
         carriers["the sensor carries {:.0f} N beside the weight"] = left_n
     if mating.unexpected_force_n is not None:
         carriers["unexpected_force_n is {:.0f}"] = mating.unexpected_force_n
@@ -97,6 +96,12 @@ def _fast_travel(
         f"(by stiffness_n_per_mm and stop_latency_ms); {words.format(carried_n)}"
     )
     yield ConfigIssue(f"{key}.mating.fast_speed_mm_s", f"{mating.fast_speed_mm_s:g}", allowed)
+
+
+def _sensor_left_n(cell: CellConfig, recipe: DeckRecipe, weighed_kg: float) -> float:
+    """What the sensor carries beside the weight; 0 where its range is not known."""
+    measuring = measuring_range(cell.force_sensors[recipe.device(FORCE)])
+    return min(measuring[:3]) - weighed_kg * G_M_S2 if measuring else 0.0
 
 
 def _rounded_down(speed_mm_s: float) -> float:
@@ -132,6 +137,11 @@ def load_remarks(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Con
         )
         yield ConfigIssue(f"robots.{robot}.load", "(missing)", said)
         return
+    left_n = _sensor_left_n(cell, recipe, load.mass_kg - load.not_weighed_kg)
+    carried_n = recipe.mating.unexpected_force_n
+    if carried_n is not None and 0.0 < left_n < carried_n:
+        said = f"never acts: the sensor carries {left_n:.0f} N beside the weight"
+        yield ConfigIssue(f"{key}.mating.unexpected_force_n", f"{carried_n:g}", said)
     if load.tolerance_kg > _WEIGHED_TO * load.mass_kg:
         said = (
             f"more than {_WEIGHED_TO * load.mass_kg:g} kg, {_WEIGHED_TO:.0%} of the mass, by which "

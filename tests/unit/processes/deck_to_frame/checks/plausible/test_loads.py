@@ -94,6 +94,13 @@ def test_the_fast_travel_presses_no_more_than_the_parts_take(
     assert issue.allowed.endswith(f"unexpected_force_n is {carried_n:.0f}")
 
 
+def test_parts_that_take_more_than_the_sensor_are_remarked_on() -> None:
+    cell, recipe = with_mating(unexpected_force_n=16_000.0)
+    (remark,) = load_remarks(cell, recipe, "recipes[1]")
+    assert remark.key == "recipes[1].mating.unexpected_force_n"
+    assert remark.allowed == "never acts: the sensor carries 3038 N beside the weight"
+
+
 def test_what_the_parts_take_is_asked_for() -> None:
     cell, recipe = with_mating(unexpected_force_n=None)
     (remark,) = load_remarks(cell, recipe, "recipes[1]")
