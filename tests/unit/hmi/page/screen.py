@@ -74,6 +74,10 @@ class Screen:
 
     def sign_in(self, name: str = "anna") -> None:
         self.tab.click("#who")
+        self.fill_in(name)
+
+    def fill_in(self, name: str = "anna") -> None:
+        """The dialog that is open."""
         self.tab.fill("#name", name)
         self.tab.fill("#pin", PIN)
         self.tab.press("#pin", "Enter")
