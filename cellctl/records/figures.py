@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from cellctl.records.entries import Figure, Verdict
-from cellctl.records.units import SIX, SIX_MM_DEG, unit_on_pages, without_unit, words
+from cellctl.records.units import SIX, SIX_MM_DEG, scaled, unit_on_pages, without_unit, words
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,17 +50,10 @@ def is_undecided(value: float | None, limit: Limit, expanded: float | None) -> b
 def on_pages(figure: Figure) -> Figure:
     """The same in the unit in which people read it, limits with the value."""
     unit, factor = unit_on_pages(figure.unit)
-
-    def times(value: float | None) -> float | None:
-        return None if value is None else value * factor
-
-    return replace(
-        figure,
-        unit=unit,
-        value=times(figure.value),
-        lower=times(figure.lower),
-        upper=times(figure.upper),
+    value, lower, upper = (
+        scaled(one, factor) for one in (figure.value, figure.lower, figure.upper)
     )
+    return replace(figure, unit=unit, value=value, lower=lower, upper=upper)
 
 
 def verdicts(figures: Mapping[str, Figure]) -> Mapping[str, str]:

@@ -84,6 +84,11 @@ def unit_on_pages(unit: str) -> tuple[str, float]:
     return _ON_PAGES.get(unit, (unit, 1.0))
 
 
+def scaled(value: float | None, factor: float) -> float | None:
+    """What is not known stays so."""
+    return None if value is None else value * factor
+
+
 def words(key: str) -> str:
     """A key as words."""
     return key.replace("_", " ")

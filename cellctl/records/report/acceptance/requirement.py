@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 from cellctl.records.entries import DRY_RUN, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
-from cellctl.records.units import unit_on_pages
+from cellctl.records.units import scaled, unit_on_pages
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,19 +80,16 @@ def on_page(entry: Requirement) -> Requirement:
     """The same in the unit of pages, uncertainty and limits with the value."""
     unit, factor = unit_on_pages(entry.unit)
 
-    def times(value: float | None) -> float | None:
-        return None if value is None else value * factor
-
-    def scaled(limit: Limit) -> Limit:
-        return Limit(times(limit.lower), times(limit.upper))
+    def times(limit: Limit) -> Limit:
+        return Limit(scaled(limit.lower, factor), scaled(limit.upper, factor))
 
     return replace(
         entry,
         unit=unit,
-        value=times(entry.value),
-        expanded=times(entry.expanded),
-        required=scaled(entry.required),
-        accepted=scaled(entry.accepted),
+        value=scaled(entry.value, factor),
+        expanded=scaled(entry.expanded, factor),
+        required=times(entry.required),
+        accepted=times(entry.accepted),
     )
 
 

@@ -35,6 +35,14 @@ def test_a_heavy_load_must_begin_to_move_more_slowly() -> None:
     assert issue.allowed.startswith("at most 15: 650 kg that begin to move")
 
 
+def with_mating(**changed: float | None) -> tuple[CellConfig, DeckRecipe]:
+    cell = load_cell(CONFIG / "deck.toml")
+    (recipe,) = cell.recipes
+    assert isinstance(recipe, DeckRecipe)
+    mating = recipe.mating.model_copy(update=changed)
+    return cell, recipe.model_copy(update={"mating": mating})
+
+
 @pytest.mark.parametrize(
     ("speed_mm_s", "latency_ms", "most"),
     [(9.5, 300.0, None), (12.0, 300.0, "9.5"), (5.0, 700.0, "4.1")],
@@ -43,30 +51,16 @@ def test_the_fast_travel_presses_no_more_than_the_sensor_carries_beside_the_weig
     speed_mm_s: float, latency_ms: float, most: str | None
 ) -> None:
     """A deck that is thicker than stated: 20 N and 1000 N/mm times speed and latency, of 5 kN."""
-    cell = load_cell(CONFIG / "deck.toml")
-    (recipe,) = cell.recipes
-    assert isinstance(recipe, DeckRecipe)
-    changed = {
-        "fast_speed_mm_s": speed_mm_s,
-        "stop_latency_ms": latency_ms,
-        "unexpected_force_n": None,
-    }
-    mating = recipe.mating.model_copy(update=changed)
-    issues = list(load_issues(cell, recipe.model_copy(update={"mating": mating}), "recipes[1]"))
+    cell, recipe = with_mating(
+        fast_speed_mm_s=speed_mm_s, stop_latency_ms=latency_ms, unexpected_force_n=None
+    )
+    issues = list(load_issues(cell, recipe, "recipes[1]"))
     if most is None:
         assert issues == []
         return
     (issue,) = issues
     assert issue.key == "recipes[1].mating.fast_speed_mm_s"
     assert issue.allowed.startswith(f"at most {most}: a deck that is thicker than stated")
-
-
-def with_mating(**changed: float | None) -> tuple[CellConfig, DeckRecipe]:
-    cell = load_cell(CONFIG / "deck.toml")
-    (recipe,) = cell.recipes
-    assert isinstance(recipe, DeckRecipe)
-    mating = recipe.mating.model_copy(update=changed)
-    return cell, recipe.model_copy(update={"mating": mating})
 
 
 @pytest.mark.parametrize(
