@@ -23,9 +23,13 @@ class OutputsDropped(DigitalIoError):
     number = 352
     text = "Digital outputs changed by themselves"
     cause = (
-        "The I/O coupler's watchdog ran down, its supply failed, or something else writes to it."
+        "The I/O coupler's watchdog ran down, as when this PC is too busy to write in time; its "
+        "supply failed, or something else writes to it."
     )
-    remedy = "Find out why before clearing; look what the actuators have done meanwhile."
+    remedy = (
+        "Find out why before clearing; look what the actuators have done meanwhile. A PC that was "
+        "too busy says so in its log (`event loop held`)."
+    )
 
 
 class WatchdogUnsuitable(DigitalIoError):

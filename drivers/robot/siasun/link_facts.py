@@ -20,7 +20,10 @@ def link_facts(channels: Mapping[str, SjlChannel]) -> dict[str, str]:
         facts["conventions"] = f"{hello.euler}, {hello.unit}"
         facts["limit of a step"] = f"{hello.step_max_mm:g} mm"
         facts["dead man"] = f"{hello.deadman_ms} ms"
-        facts["streamed motion"] = "not offered" if hello.stream is None else "offered"
+        # By the one channel whose job program streams.
+        if hello.stream is not None:
+            facts["streamed motion"] = "offered"
+        facts.setdefault("streamed motion", "not offered")
     # By convention of the protocol; the controller cannot be asked for another one.
     facts["tool and user frame"] = "0 and 0: flange and base"
     return facts

@@ -236,6 +236,7 @@ async def test_ticks_after_the_end_are_passed_over() -> None:
 
 async def test_a_job_program_without_the_option() -> None:
     async with running() as cell:
+        assert cell.robot.link_facts()["streamed motion"] == "not offered"
         with pytest.raises(StreamNotOffered):
             cell.robot.stream_offer()
         with pytest.raises(StreamNotOffered):
@@ -259,6 +260,10 @@ async def rig() -> AsyncIterator[Rig]:
     async with sjl_rig() as rig:
         await rig.connect()
         yield rig
+
+
+async def test_what_one_channel_offers_is_offered(rig: Rig) -> None:
+    assert rig.robot.link_facts()["streamed motion"] == "offered"
 
 
 async def climb(rig: Rig, ticks: int = 40) -> None:
