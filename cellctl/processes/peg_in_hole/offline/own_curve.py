@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from math import isfinite
-from typing import Any
+from typing import Any, TypeGuard
 
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
@@ -20,17 +20,21 @@ def require_own_curve(found: InsertionEvidence, recorded: Mapping[str, Any] | No
     """
     if recorded is None:
         return
-    for name, unit, scale, allowed in (
-        ("seat_force_n", "N", 1.0, _FORCE_N),
-        ("depth_m", "mm", MM, _DEPTH_MM),
-    ):
-        here, there = getattr(found, name), recorded.get(name)
-        if here is None or not isinstance(there, float | int) or not isfinite(there):
-            continue
-        share = _FORCE_SHARE * abs(there) / scale if unit == "N" else 0.0
-        if abs(here - there) / scale > max(allowed, share):
-            words = "seat force" if unit == "N" else "depth of the seat"
-            raise PegCurveInvalid(
-                f"its {words} is {here / scale:.4g} {unit}, that of the run in the task "
-                f"{there / scale:.4g} {unit}: it is the curve of another run, or in other units"
-            )
+    force_n, depth_m = recorded.get("seat_force_n"), recorded.get("depth_m")
+    if _is_known(force_n):
+        allowed_n = max(_FORCE_N, _FORCE_SHARE * abs(force_n))
+        _require_near("seat force", found.seat_force_n, force_n, allowed_n, "N")
+    if _is_known(depth_m) and found.depth_m is not None:
+        _require_near("depth of the seat", found.depth_m / MM, depth_m / MM, _DEPTH_MM, "mm")
+
+
+def _is_known(figure: object) -> TypeGuard[float]:
+    return isinstance(figure, float | int) and isfinite(figure)
+
+
+def _require_near(words: str, here: float | None, there: float, allowed: float, unit: str) -> None:
+    if here is not None and abs(here - there) > allowed:
+        raise PegCurveInvalid(
+            f"its {words} is {here:.4g} {unit}, that of the run in the task {there:.4g} {unit}: it "
+            "is the curve of another run, or in other units"
+        )
