@@ -5,7 +5,7 @@ from cellctl.records.entries import RunRecord
 from cellctl.records.report.acceptance.requirement import (
     RequirementGroup,
     not_measured,
-    of_figure,
+    of_figures,
 )
 
 _GROUPS = (
@@ -56,8 +56,7 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
     """Every requirement on a plugging; what its run has ended without is not measured."""
     groups = []
     for title, note, titles in _GROUPS:
-        found = (of_figure(record, key, words) for key, words in titles.items())
         wanted = {key: titles[key] for key in _ALWAYS if key in titles}
-        rows = (entry for entry in found if entry is not None)
-        groups.append(RequirementGroup(title, (*rows, *not_measured(record, wanted)), note))
+        rows = *of_figures(record, titles), *not_measured(record, wanted)
+        groups.append(RequirementGroup(title, rows, note))
     return tuple(groups)

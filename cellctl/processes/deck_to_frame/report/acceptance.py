@@ -14,7 +14,7 @@ from cellctl.records.report.acceptance.requirement import (
     RequirementGroup,
     guarded,
     not_measured,
-    of_figure,
+    of_figures,
 )
 from cellctl.records.report.sections import Part
 
@@ -101,7 +101,7 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
         RequirementGroup(
             "Mating",
             (
-                *_found(record, _MATING),
+                *of_figures(record, _MATING),
                 *not_measured(record, {key: _MATING[key] for key in _MATED}),
             ),
             "in the axes of the deck, gravity removed; without U, because nobody has evaluated an "
@@ -116,7 +116,7 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
         RequirementGroup(
             "Measurements",
             tuple(
-                _found(
+                of_figures(
                     record,
                     {f"{keys.WORST_RESIDUAL}.{kind}": title for kind, title in _FITS.items()},
                 )
@@ -183,10 +183,3 @@ def _before_mating(record: RunRecord) -> Iterator[Requirement]:
 
 def _times_coverage(sigma: float | None) -> float | None:
     return None if sigma is None else COVERAGE_FACTOR * sigma
-
-
-def _found(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:
-    for key, title in titles.items():
-        found = of_figure(record, key, title)
-        if found is not None:
-            yield found

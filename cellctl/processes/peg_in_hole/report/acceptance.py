@@ -26,7 +26,7 @@ from cellctl.records.entries import RunRecord
 from cellctl.records.report.acceptance.requirement import (
     RequirementGroup,
     not_measured,
-    of_figure,
+    of_figures,
 )
 from cellctl.records.report.text import quantity
 
@@ -86,10 +86,9 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
 
 
 def _group(record: RunRecord, title: str, titles: Mapping[str, str], note: str) -> RequirementGroup:
-    found = (of_figure(record, key, words) for key, words in titles.items())
-    rows = (entry for entry in found if entry is not None)
     wanted = {key: words for key, words in titles.items() if _always(record, key)}
-    return RequirementGroup(title, (*rows, *not_measured(record, wanted)), note)
+    rows = *of_figures(record, titles), *not_measured(record, wanted)
+    return RequirementGroup(title, rows, note)
 
 
 def _always(record: RunRecord, key: str) -> bool:

@@ -93,6 +93,14 @@ def on_page(entry: Requirement) -> Requirement:
     )
 
 
+def of_figures(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:
+    """Those of the titled keys, in their order, of which the run has a figure with a limit."""
+    for key, title in titles.items():
+        found = of_figure(record, key, title)
+        if found is not None:
+            yield found
+
+
 def not_measured(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:
     """What a run that was to make a part has ended without, by the keys of its figures.
 
