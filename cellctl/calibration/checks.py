@@ -5,12 +5,15 @@ from dataclasses import dataclass
 from math import isnan
 from typing import Any, Literal
 
-Side = Literal["max", "min"]
+Side = Literal["max", "min", "both"]
+"""What a limit is: the most, the least, or the most of the magnitude."""
+RELATIONS: Mapping[Side, str] = {"max": "≤", "min": "≥", "both": "within ±"}
+"""What stands between a figure and its limit, by the side."""
 
 
 @dataclass(frozen=True, slots=True)
 class LimitCheck:
-    """One figure and what it may be at most or must be at least, in the unit of reports."""
+    """One figure and its limit, in the unit of reports."""
 
     name: str
     value: float
@@ -22,10 +25,12 @@ class LimitCheck:
     def passed(self) -> bool:
         """False also for a value that is not a number."""
         # Written as the comparison that must hold: with NaN every comparison is false.
-        return bool(self.value <= self.limit if self.side == "max" else self.value >= self.limit)
+        if self.side == "min":
+            return bool(self.value >= self.limit)
+        return bool((abs(self.value) if self.side == "both" else self.value) <= self.limit)
 
     def __str__(self) -> str:
-        relation = "≤" if self.side == "max" else "≥"
+        relation = RELATIONS[self.side]
         if isnan(self.value):
             limit = f"{self.limit:.4g} {self.unit}".rstrip()
             return f"{self.name} not measured ({relation} {limit})"
@@ -46,10 +51,16 @@ class LimitCheck:
 
     @classmethod
     def from_record(cls, record: Mapping[str, Any]) -> "LimitCheck":
-        """The inverse of ``to_record``."""
-        side: Side = "min" if record["side"] == "min" else "max"
+        """The inverse of ``to_record``.
+
+        Without a side, as in payloads of older versions, the limit is one of the magnitude. Raises
+        ``KeyError`` or ``ValueError`` for what is no check.
+        """
+        written = record.get("side", "both")
+        if written not in RELATIONS:
+            raise ValueError(f"side {written!r} of a limit")
         value, limit = float(record["value"]), float(record["limit"])
-        return cls(str(record["name"]), value, limit, str(record["unit"]), side)
+        return cls(str(record["name"]), value, limit, str(record["unit"]), written)
 
 
 Checks = tuple[LimitCheck, ...]

@@ -18,6 +18,7 @@ from cellctl.vision.camera.triangulation import epipolar_distances_px, triangula
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.known_kinds import kind_of
 from cellctl.vision.holes.correspondence import (
+    COARSE_TOLERANCE_M,
     Assignment,
     Expectation,
     StereoCandidate,
@@ -39,8 +40,6 @@ LAYOUT_TOLERANCE_M = 0.3e-3
 """Largest deviation of a measured hole from the drawing: what is off by more is another feature, or
 another part."""
 
-_COARSE_TOLERANCE_M = 2.5e-3
-"""Largest deviation of features as they are first found, to one or two pixels."""
 _COARSE_M = 0.5e-3
 """Additional deviation of holes that are located by their edges alone."""
 _EPIPOLAR_PX = 0.35
@@ -111,7 +110,7 @@ def _find(
         else:
             candidates = search_windows(images, holes, expectation)
         found = assignments(
-            holes, candidates, tolerance_m=_COARSE_TOLERANCE_M, expectation=expectation
+            holes, candidates, tolerance_m=COARSE_TOLERANCE_M, expectation=expectation
         )
         if found:
             return found

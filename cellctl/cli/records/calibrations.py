@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
+from cellctl.calibration.checks import RELATIONS
 from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
@@ -92,7 +93,7 @@ def _figures(found: Sequence[Calibration]) -> Table:
     by_name = [dict(_checks(one)) for one in found]
     for name, newest in by_name[-1].items():
         values = [_value(checks.get(name)) for checks in by_name]
-        relation = "≥" if newest.get("side") == "min" else "≤"
+        relation = RELATIONS[newest.get("side", "both")]
         table.add_row(name, *values, f"{relation} {newest['limit']:.4g} {newest['unit']}".rstrip())
     return table
 

@@ -111,7 +111,9 @@ def payload_document(result: PayloadResult) -> dict[str, Any]:
             "condition_rigid12": excitation.condition_rigid12,
             "condition_affine24": excitation.condition_affine24,
         },
-        "checks": [{**asdict(check), "passed": check.passed} for check in result.checks],
+        "checks": [
+            {**asdict(check), "side": "both", "passed": check.passed} for check in result.checks
+        ],
     }
 
 

@@ -19,7 +19,8 @@ class DeckSettings(Section):
     base_frame_joints_deg: JointsDeg
     """Main robot, middle of both arcs: station empty, targets seen by the large-field head."""
     flange_T_target_board: WrittenPose
-    """Where the target board lies under a head, roughly: it looks the same upside down."""
+    """Where the target board lies under a head, roughly. Elsewhere it is found as well, as long as
+    all of it is in view; it looks the same after half a turn, which this pose decides."""
     circle_stops: Annotated[int, Field(ge=5, le=60)] = 15
     """Stops on each arc of procedure 103."""
     circle_arc_deg: Annotated[float, Field(ge=20, le=180)] = 100.0

@@ -13,6 +13,7 @@ from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.known_kinds import by_brightness, kind_of
 from cellctl.vision.holes.candidates import Candidate, find_candidates
 from cellctl.vision.holes.correspondence import Expectation, StereoCandidate, pair_candidates
+from cellctl.vision.holes.discs import bright_discs
 
 NEAR, WIDE = (0.8, 1.3), (0.45, 2.2)
 """Ranges of distance for the whole-image search, in parts of the head's working distance."""
@@ -104,7 +105,7 @@ class WholeImageSearch:
         depth_m = (reach[0] * distance_m, reach[1] * distance_m)
         left, right = (
             {
-                bright: find_candidates(image, _radii(camera, group, depth_m), bright=bright)
+                bright: _round(image, _radii(camera, group, depth_m), bright=bright)
                 for bright, group in by_brightness(self.holes)
             }
             for image, camera in ((images.left, head.left), (images.right, head.right))
@@ -170,11 +171,19 @@ def _in_windows(
             continue
         radii_px = (radius_px * (1.0 - _RADIUS_MARGIN), radius_px * (1.0 + _RADIUS_MARGIN))
         # Windows of neighbouring holes overlap: a feature that two of them show is kept once.
-        for item in find_candidates(window, radii_px, bright=kind_of(hole).bright, limit=12):
+        for item in _round(window, radii_px, bright=kind_of(hole).bright, limit=12):
             centre = item.centre_px + origin
             if not any(_same(centre, item.radius_px, other) for other in found):
                 found.append(Candidate(centre, item.radius_px, item.support))
     return found
+
+
+def _round(
+    image: Image, radii_px: tuple[float, float], *, bright: bool, limit: int = 60
+) -> list[Candidate]:
+    if bright:
+        return bright_discs(image, radii_px)[:limit]
+    return find_candidates(image, radii_px, limit=limit)
 
 
 def _window(image: Image, middle: Array, half_px: float) -> tuple[Image | None, Array]:

@@ -15,6 +15,7 @@ from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.link import ReplyTimeout
+from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
 from cellctl.interfaces import Target
 from cellctl.procedures.target_board import PAIRS
@@ -121,6 +122,48 @@ async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Board
     for station, robot, turn in zip(cell.heads, (cell.aux_1, cell.aux_2), (0, 1), strict=True):
         place = np.radians(station.config.poses_deg["measuring"])
         np.testing.assert_allclose(robot.moves[turn].target, place)
+
+
+async def test_a_board_that_lies_elsewhere_is_looked_for_once(
+    rig: ProcedureRig, boards: Boards
+) -> None:
+    """With the first picture of a head, in the whole of it; the others look where it was found."""
+    elsewhere = pose_from_xyzabc([5, -8, 505, 3, 21, 179])
+    searched: list[RigidTransform] = []
+
+    def search(_images: object, _discs: object, told: RigidTransform) -> RigidTransform:
+        searched.append(told)
+        return elsewhere
+
+    def near(*seen: Any, camera_T_part: RigidTransform, search_radius_m: float) -> PairMeasurement:
+        if camera_T_part is not elsewhere:
+            raise HoleMissing("nothing like P7 was seen by both cameras")
+        return boards._measure(*seen, camera_T_part=camera_T_part, search_radius_m=search_radius_m)
+
+    rig.answer(measure_pair=near, pose_turned_like=search, transfer_picture=lambda _: b"png")
+    for head, number in (("head_1", 104), ("head_2", 105)):
+        boards.place(head)
+        outcome = await half(rig, number)
+    assert outcome is not None
+    assert outcome.passed
+    assert len(searched) == 2
+    assert boards.predicted == [elsewhere] * 2 * PAIRS
+
+
+async def test_a_board_that_is_covered_later_ends_the_procedure(
+    rig: ProcedureRig, boards: Boards
+) -> None:
+    """Someone reaches over the board: what was found before must not be looked for elsewhere."""
+
+    def covered(*seen: Any, **expected: Any) -> PairMeasurement:
+        if boards.predicted:
+            raise HoleMissing("nothing like P7 was seen by both cameras")
+        return boards._measure(*seen, **expected)
+
+    rig.answer(measure_pair=covered, pose_turned_like=pytest.fail)
+    boards.place("head_1")
+    with pytest.raises(HoleMissing):
+        await half(rig, 104)
 
 
 async def test_a_placement_serves_once(rig: ProcedureRig, boards: Boards) -> None:
