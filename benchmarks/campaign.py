@@ -45,7 +45,7 @@ def campaign(
     console = Console(highlight=False, width=150)
     out.mkdir(parents=True, exist_ok=True)
     options = [part for scale in imperfection or () for part in ("--imperfection", scale)]
-    results = [_run(seed, out, options, console) for seed in range(first, first + n)]
+    results = [run_seed(seed, out, options, console) for seed in range(first, first + n)]
     (out / "campaign.json").write_text(json.dumps(results, indent=2) + "\n", encoding="utf-8")
     console.print(_table(results))
     good = [result for result in results if result["passed"]]
@@ -61,7 +61,9 @@ def campaign(
     raise typer.Exit(0 if len(good) == len(results) else 1)
 
 
-def _run(seed: int, out: Path, options: Sequence[str], console: Console) -> dict[str, Any]:
+def run_seed(seed: int, out: Path, options: Sequence[str], console: Console) -> dict[str, Any]:
+    """One demonstration in a folder of its own below ``out``: its ``result.json``, and how long it
+    took."""
     folder = out / f"seed-{seed}"
     path = folder / "result.json"
     path.unlink(missing_ok=True)  # that of an earlier campaign is no result of this one
