@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 SEED ?= 1
 N ?= 20
 
-.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-page page-pictures bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
+.PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning campaign-planned-demo bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-page page-pictures bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
 	format lint types imports check test test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
@@ -89,6 +89,11 @@ campaign-insertion: venv
 campaign-planning: N = 100
 campaign-planning: venv
 	$(BIN)/python -m benchmarks.planning.campaign -n $(N)
+
+# Takes forty minutes: plans the cell of the deck, calibrates it there, and makes ten parts in it and in the taught one.
+campaign-planned-demo: N = 10
+campaign-planned-demo: venv
+	$(BIN)/python -m benchmarks.planning.planned_demo -n $(N)
 
 bench: bench-metrology bench-looks bench-hand-eye bench-guard
 

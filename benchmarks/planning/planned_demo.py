@@ -1,8 +1,8 @@
-"""The deck assembled at planned viewpoints over planned ways, beside the taught ones, seed by seed.
+"""The deck assembled at planned viewpoints over planned ways, beside the taught ones.
 
-``python -m benchmarks.planning.planned_demo -n 10`` plans viewpoints and ways of the shipped cell as
-its engineer would, calibrates the fake cell there, and lets both cells make the same parts in turn.
-What a folder has already is not made again. Exit code 1 when a part was not good, or when the
+``python -m benchmarks.planning.planned_demo -n 10`` plans viewpoints and ways of the shipped cell
+as its engineer would, calibrates the fake cell there, and lets both cells make the same parts in
+turn. What a folder has already is not made again. Exit code 1 when a part was not good, or when the
 planned cell is worse than the taught one by more than the parts explain.
 """
 
@@ -77,7 +77,7 @@ def planned_cell(folder: Path, console: Console) -> Path:
 
 
 def calibrate(cell: Path, out: Path, console: Console) -> None:
-    """Run all procedures of the fake cell at the planned poses; ADR 0004 says without which drift."""
+    """Run all procedures of the fake cell there; ADR 0004 says why without drift."""
     done = cell.parent / "calibrated"
     if done.exists():
         return
