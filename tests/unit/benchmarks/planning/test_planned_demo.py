@@ -1,5 +1,6 @@
 """The planned cell is judged by the same parts in both cells."""
 
+import io
 from typing import Any
 
 from rich.console import Console
@@ -30,7 +31,7 @@ def test_scatter_is_not_above() -> None:
 
 def test_the_table_leaves_out_a_part_that_one_cell_has_not_made() -> None:
     failed = [{"passed": False}, *parts([0.08, 0.05, 0.04], [61.0, 62.0, 60.0])]
-    console = Console(width=120, record=True, quiet=True)
+    console = Console(width=120, file=io.StringIO(), record=True)
     console.print(table(TAUGHT, failed))
     text = console.export_text()
     assert "planned, 3 of 4 good" in text
