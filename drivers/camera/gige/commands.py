@@ -10,7 +10,6 @@ from rich.table import Table
 
 from cellctl.errors.camera import ProducerUnusable
 from cellctl.errors.link import LinkError, ReplyTimeout
-from drivers.camera.gige.config import Acquisition
 from drivers.camera.gige.connection import LibraryProcess
 from drivers.camera.gige.producer_files import PRODUCER_PATH, producer_files
 from drivers.camera.gige.protocol import CamerasSeen, CameraState, ListRequest, SeenCamera
@@ -33,7 +32,7 @@ def devices(
     timeout_s: Annotated[float, typer.Option(help="For each producer.", min=1.0)] = 20.0,
 ) -> None:
     """List the cameras that GenTL producers see; opens none of them."""
-    files = producer_files(Acquisition(producers=tuple(producer or ())))
+    files = producer_files(tuple(producer or ()))
     if not files:
         raise ProducerUnusable(f"none is named, and no folder of {PRODUCER_PATH} holds a .cti")
     seen: list[SeenCamera] = []
@@ -60,7 +59,7 @@ def _seen_by(producer: Path, timeout_s: float) -> tuple[SeenCamera, ...]:
     library = LibraryProcess(producer.name)
     library.start()
     try:
-        answer, _ = library.ask(ListRequest(Acquisition(producers=(producer,))), timeout_s)
+        answer, _ = library.ask(ListRequest((producer,)), timeout_s)
     finally:
         library.end()
     if not isinstance(answer, CamerasSeen):

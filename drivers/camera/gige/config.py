@@ -1,10 +1,13 @@
 """The settings of a GenTL camera and of a head of two. Seconds, dB, bytes."""
 
+from dataclasses import fields
 from ipaddress import IPv4Address
 from pathlib import Path
 from typing import Annotated, Self
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from drivers.camera.gige.protocol import CameraSettings, CameraSetup, SensorRegion
 
 Seconds = Annotated[float, Field(gt=0.0, le=600.0)]
 Feature = bool | int | float | str
@@ -77,6 +80,12 @@ class Acquisition(BaseModel):
     """From the trigger to the whole image, for each try."""
     tries: Annotated[int, Field(ge=1, le=20)] = 3
     """Exposures for one image: one that misses packets is taken again."""
+
+    def setup_of(self, camera: Selection) -> CameraSetup:
+        """This for one camera, in the words of the process of the maker's library."""
+        said = {one.name: getattr(self, one.name) for one in fields(CameraSettings)}
+        region = self.region and SensorRegion(**self.region.model_dump())
+        return CameraSetup(camera.asked(), CameraSettings(**said | {"region": region}))
 
 
 class GigeCameraConfig(Acquisition):

@@ -43,7 +43,7 @@ class GigeDevice(Device):
 
     def __init__(self, name: str, cameras: tuple[CameraSetup, ...]) -> None:
         self.name = name
-        self._settings = cameras[0].acquisition
+        self._settings = cameras[0].settings
         self._cameras = cameras
         self._library = LibraryProcess(name)
         self._turn = asyncio.Lock()
@@ -162,9 +162,8 @@ class GigeDevice(Device):
     def _setups(self) -> tuple[CameraSetup, ...]:
         if self._exposure_s is None:
             return self._cameras
-        change = {"exposure_s": self._exposure_s}
         return tuple(
-            replace(one, acquisition=one.acquisition.model_copy(update=change))
+            replace(one, settings=replace(one.settings, exposure_s=self._exposure_s))
             for one in self._cameras
         )
 
@@ -206,7 +205,7 @@ class GigeCamera(GigeDevice, Camera):
     Config = GigeCameraConfig
 
     def __init__(self, name: str, config: GigeCameraConfig) -> None:
-        super().__init__(name, (CameraSetup(config.camera, config),))
+        super().__init__(name, (config.setup_of(config.camera),))
         self._grey = config.grey
 
     async def grab(self) -> CameraImage:
@@ -236,8 +235,8 @@ class GigeHead(GigeDevice, StereoCamera):
     Config = GigeHeadConfig
 
     def __init__(self, name: str, config: GigeHeadConfig) -> None:
-        left = CameraSetup(config.left, config.of_left())
-        super().__init__(name, (left, CameraSetup(config.right, config.of_right())))
+        left, right = config.of_left(), config.of_right()
+        super().__init__(name, (left.setup_of(config.left), right.setup_of(config.right)))
         self._simultaneity = Simultaneity(name, config)
 
     def _forget(self) -> None:

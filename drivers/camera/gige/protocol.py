@@ -1,9 +1,13 @@
-"""What the driver and the process of the maker's library say to each other."""
+"""What the driver and the process of the maker's library say to each other.
 
+All of it is plain: whatever checks a cell file would be loaded in that process too, and make each
+start of it a third slower.
+"""
+
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
-
-from drivers.camera.gige.config import Acquisition, Selection
+from pathlib import Path
 
 
 class Trouble(Enum):
@@ -30,11 +34,41 @@ class Trouble(Enum):
 
 
 @dataclass(frozen=True, slots=True)
+class SensorRegion:
+    """The part of the sensor that is read out, px."""
+
+    width: int
+    height: int
+    offset_x: int
+    offset_y: int
+
+
+@dataclass(frozen=True, slots=True)
+class CameraSettings:
+    """How a camera is set up: what ``config.Acquisition`` says of each."""
+
+    producers: tuple[Path, ...]
+    trigger: str
+    burst: int
+    pixel_format: str
+    exposure_s: float | None
+    gain_db: float | None
+    packet_bytes: int | None
+    packet_delay_ticks: int | None
+    region: SensorRegion | None
+    features: Mapping[str, bool | int | float | str]
+    connect_timeout_s: float
+    image_timeout_s: float
+    tries: int
+
+
+@dataclass(frozen=True, slots=True)
 class CameraSetup:
     """One camera and how it is set up."""
 
-    selection: Selection
-    acquisition: Acquisition
+    keys: Mapping[str, str]
+    """By what it is known, such as its ``serial_number``."""
+    settings: CameraSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +100,8 @@ class SetExposureRequest:
 class ListRequest:
     """What the producers see."""
 
-    acquisition: Acquisition
+    producers: tuple[Path, ...]
+    """Without any, those of GENICAM_GENTL64_PATH."""
 
 
 Request = OpenRequest | GrabRequest | SetExposureRequest | ListRequest

@@ -315,14 +315,14 @@ def test_packets_are_set_for_the_network_by_the_name_of_either_edition(name: str
     settings = GigeCameraConfig(
         camera=Selection(serial_number=LEFT), packet_bytes=8000, packet_delay_ticks=65_000
     )
-    Features(nodes, "eye").set_up(settings)
+    Features(nodes, "eye").set_up(settings.setup_of(settings.camera).settings)
     assert (size.value, delay.value) == (8000, 65_000)
 
 
 def test_another_trigger_that_was_left_on_is_switched_off() -> None:
     nodes = TriggerNodes()
     settings = GigeCameraConfig(camera=Selection(serial_number=LEFT))
-    Features(nodes, "eye").set_up(settings)
+    Features(nodes, "eye").set_up(settings.setup_of(settings.camera).settings)
     assert {name: mode.value for name, mode in nodes.modes.items()} == {
         "AcquisitionStart": "Off",
         "FrameStart": "On",
@@ -335,7 +335,7 @@ def test_features_of_the_settings_meet_the_trigger_of_a_frame() -> None:
     settings = GigeCameraConfig(
         camera=Selection(serial_number=LEFT), features={"TriggerDelay": 20.0}
     )
-    Features(nodes, "eye").set_up(settings)
+    Features(nodes, "eye").set_up(settings.setup_of(settings.camera).settings)
     assert nodes.delays["FrameStart"].value == 20.0
     assert nodes.delays["AcquisitionStart"].value == 0.0
 
@@ -345,6 +345,6 @@ def test_a_feature_that_selects_another_trigger_moves_no_trigger_away() -> None:
     settings = GigeCameraConfig(
         camera=Selection(serial_number=LEFT), features={"TriggerSelector": "AcquisitionStart"}
     )
-    Features(nodes, "eye").set_up(settings)
+    Features(nodes, "eye").set_up(settings.setup_of(settings.camera).settings)
     assert nodes.modes["FrameStart"].value == "On"
     assert nodes.modes["AcquisitionStart"].value == "Off"

@@ -6,8 +6,8 @@ import signal
 from contextlib import suppress
 from multiprocessing import reduction
 from multiprocessing.connection import Connection
+from pathlib import Path
 
-from drivers.camera.gige.config import Acquisition
 from drivers.camera.gige.library_process.genicam_camera import GenicamCamera
 from drivers.camera.gige.library_process.image_memory import ImageMemory
 from drivers.camera.gige.library_process.producers import Found, Producers
@@ -68,8 +68,8 @@ class _Cameras:
         """Carry a request out; the answer and descriptors of the images' memory."""
         try:
             match request:
-                case ListRequest(acquisition):
-                    return self._seen(acquisition), []
+                case ListRequest(producers):
+                    return self._seen(producers), []
                 case OpenRequest():
                     return self._opened(request), []
                 case GrabRequest(released):
@@ -93,17 +93,17 @@ class _Cameras:
             self._producers.close()
             self._producers = None
 
-    def _look(self, acquisition: Acquisition) -> tuple[Found, ...]:
+    def _look(self, producers: tuple[Path, ...]) -> tuple[Found, ...]:
         if self._producers is None:
-            files = producer_files(acquisition)
+            files = producer_files(producers)
             if not files:
                 text = f"no producer: neither the settings nor {PRODUCER_PATH} name one (.cti)"
                 raise TroubleError(Trouble.PRODUCER, text)
             self._producers = Producers(files)
         return self._producers.look()
 
-    def _seen(self, acquisition: Acquisition) -> CamerasSeen:
-        found = self._look(acquisition)
+    def _seen(self, producers: tuple[Path, ...]) -> CamerasSeen:
+        found = self._look(producers)
         return CamerasSeen(tuple(one.seen for one in found), self._unusable)
 
     @property
@@ -111,12 +111,12 @@ class _Cameras:
         return () if self._producers is None else self._producers.unusable
 
     def _opened(self, request: OpenRequest) -> Opened:
-        first = request.cameras[0].acquisition
-        there = self._look(first)
+        first = request.cameras[0].settings
+        there = self._look(first.producers)
         # All are found before one is opened: a mistyped name costs nothing then.
-        found = [selected(there, one.selection, self._unusable) for one in request.cameras]
+        found = [selected(there, one.keys, self._unusable) for one in request.cameras]
         for one, setup in zip(found, request.cameras, strict=True):
-            camera = GenicamCamera(one, setup.selection, setup.acquisition)
+            camera = GenicamCamera(one, setup)
             self._open.append(camera)
             camera.set_up()
         for camera in self._open:

@@ -5,14 +5,13 @@ from typing import Any
 
 from genicam import genapi, gentl
 
-from drivers.camera.gige.config import Acquisition, Region
 from drivers.camera.gige.library_process.trouble import (
     GENICAM_ERRORS,
     TroubleError,
     camera_errors,
     in_words,
 )
-from drivers.camera.gige.protocol import Trouble
+from drivers.camera.gige.protocol import CameraSettings, SensorRegion, Trouble
 
 _OTHER_EDITIONS = {
     "ExposureTime": "ExposureTimeAbs",  # before SFNC 1.5.1, in µs too
@@ -73,7 +72,7 @@ class Features:
             text = f"{self._label} refuses {name} = {value}{_allowed(node)}"
             raise TroubleError(Trouble.FEATURE, text) from error
 
-    def set_up(self, settings: Acquisition) -> None:
+    def set_up(self, settings: CameraSettings) -> None:
         """Write all settings; raises ``TroubleError``."""
         # First, so that the settings' own features meet the trigger that starts a frame.
         self._switch_other_triggers_off()
@@ -111,7 +110,7 @@ class Features:
         self._write_if_there("ExposureMode", "Timed")
         self._write_if_there("ExposureAuto", "Off")
 
-    def _set_region(self, region: Region) -> None:
+    def _set_region(self, region: SensorRegion) -> None:
         # Offsets first to zero: the new size may not fit beside the old ones.
         for name, value in (
             ("OffsetX", 0), ("OffsetY", 0), ("Width", region.width), ("Height", region.height),
@@ -121,7 +120,7 @@ class Features:
             if value or self.has(name):
                 self.write(name, value)
 
-    def _set_trigger(self, settings: Acquisition) -> None:
+    def _set_trigger(self, settings: CameraSettings) -> None:
         self._write_if_there("AcquisitionMode", "Continuous")
         # Again: the settings' own features may have selected another one.
         self._write_if_there("TriggerSelector", "FrameStart")

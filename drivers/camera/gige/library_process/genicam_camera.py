@@ -7,7 +7,6 @@ from genicam import gentl
 from harvesters.core import Callback, ImageAcquirer
 
 from cellctl.clock import now_s
-from drivers.camera.gige.config import Acquisition, Selection
 from drivers.camera.gige.library_process.chunks import image_chunks
 from drivers.camera.gige.library_process.delivered import delivered, format_name, said, time_stamp
 from drivers.camera.gige.library_process.features import Features
@@ -21,7 +20,7 @@ from drivers.camera.gige.library_process.trouble import (
     camera_errors,
     in_words,
 )
-from drivers.camera.gige.protocol import OpenedCamera, SentImage, Trouble
+from drivers.camera.gige.protocol import CameraSetup, OpenedCamera, SentImage, Trouble
 
 BUFFERS = 4
 """Images that a camera may have under way. One is asked for at a time; the others are for images
@@ -44,10 +43,10 @@ the first was read out. The third one begins after the second has ended."""
 class GenicamCamera:
     """Open until its producers are closed; it acquires from ``start`` to ``stop``."""
 
-    def __init__(self, found: Found, camera: Selection, settings: Acquisition) -> None:
+    def __init__(self, found: Found, setup: CameraSetup) -> None:
         """Raises ``TroubleError``."""
-        self.label = label_of(camera)
-        self._settings = settings
+        self.label = label_of(setup.keys)
+        self._settings = setup.settings
         self._acquirer = opened(found, self.label)
         self._features = Features(self._acquirer.remote_device.node_map, self.label)
         self._acquirer.num_buffers = max(BUFFERS, self._acquirer.min_num_buffers)

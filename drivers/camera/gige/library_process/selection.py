@@ -1,10 +1,9 @@
 """Finds the camera that the settings name among those that the producers see."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from harvesters.core import ImageAcquirer
 
-from drivers.camera.gige.config import Selection
 from drivers.camera.gige.library_process.producers import Found
 from drivers.camera.gige.library_process.trouble import (
     GENICAM_ERRORS,
@@ -15,15 +14,16 @@ from drivers.camera.gige.library_process.trouble import (
 from drivers.camera.gige.protocol import CameraState, SeenCamera, Trouble
 
 
-def selected(cameras: Sequence[Found], camera: Selection, unusable: Sequence[str] = ()) -> Found:
-    """The one camera that is meant.
+def selected(
+    cameras: Sequence[Found], keys: Mapping[str, str], unusable: Sequence[str] = ()
+) -> Found:
+    """The one camera that is known by all of these keys.
 
     ``unusable`` are producers that might have seen it. Raises ``TroubleError``: ``ABSENT`` for
     none, ``AMBIGUOUS`` for several, ``BUSY`` for one of another program.
     """
-    asked = camera.asked()
-    label = label_of(camera)
-    found = [one for one in cameras if all(getattr(one.seen, k) == v for k, v in asked.items())]
+    label = label_of(keys)
+    found = [one for one in cameras if all(getattr(one.seen, k) == v for k, v in keys.items())]
     if not found:
         there = ", ".join(_in_words(one.seen) for one in cameras) or "no camera"
         rest = "".join(f"; {text}" for text in unusable)
@@ -51,9 +51,9 @@ def opened(found: Found, label: str) -> ImageAcquirer:
         raise TroubleError(trouble, f"{label}: {in_words(error)}") from error
 
 
-def label_of(camera: Selection) -> str:
+def label_of(keys: Mapping[str, str]) -> str:
     """The key that names a camera, with its value."""
-    return " ".join(f"{key} {text}" for key, text in camera.asked().items())
+    return " ".join(f"{key} {text}" for key, text in keys.items())
 
 
 def _in_words(one: SeenCamera) -> str:
