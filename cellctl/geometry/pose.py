@@ -5,14 +5,18 @@ radians. Files, PLC, reports and robot controllers write X, Y, Z in mm and A, B,
 R = Rz(A) Ry(B) Rx(C) (intrinsic Z-Y'-X'').
 """
 
+import math
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial.transform import RigidTransform, Rotation
+from scipy.spatial.transform import RigidTransform
 
 Array = NDArray[np.float64]
 
 MM = 1e-3
 """Metres in a millimetre."""
+_POLE = 1e-9
+"""Cosine of B below which only the sum or difference of A and C is determined."""
 
 
 def pose_from_xyzabc(xyz_mm_abc_deg: ArrayLike) -> RigidTransform:
@@ -23,20 +27,24 @@ def pose_from_xyzabc(xyz_mm_abc_deg: ArrayLike) -> RigidTransform:
     values = np.asarray(xyz_mm_abc_deg, dtype=float)
     if values.shape != (6,) or not np.isfinite(values).all():
         raise ValueError(f"a pose is six finite numbers, got {xyz_mm_abc_deg!r}")
-    # What `from_components` gives, which takes three times as long: it makes a pose of each of the
-    # two, multiplies them and looks whether the product is one.
-    matrix = np.eye(4)
-    matrix[:3, :3] = Rotation.from_euler("ZYX", values[3:], degrees=True).as_matrix()
-    matrix[:3, 3] = values[:3] * MM
-    return RigidTransform(matrix, normalize=False)
+    return RigidTransform(_matrix(values.tolist()), normalize=False)
 
 
 def pose_to_xyzabc(pose: RigidTransform) -> Array:
-    """Written form of a pose, shape (6,): X, Y, Z in mm, A, B, C in degrees."""
-    # At B = ±90° only the sum or difference of A and C is determined. The rotation is still the
-    # same, which is all that a written pose promises, so that no warning is needed.
-    abc_deg = pose.rotation.as_euler("ZYX", degrees=True, suppress_warnings=True)
-    return np.concatenate([pose.translation / MM, abc_deg])
+    """Written form of a pose, shape (6,): X, Y, Z in mm, A, B, C in degrees.
+
+    At B = ±90°, where only the sum or difference of A and C is determined, C is 0.
+    """
+    rows = pose.as_matrix().tolist()
+    (xx, xy, xz, x_m), (yx, yy, yz, y_m), (zx, _, _, z_m), _ = rows
+    level = math.hypot(xx, yx)
+    a = math.atan2(yx, xx) if level > _POLE else math.atan2(-xy, yy)
+    sin, cos = math.sin(a), math.cos(a)
+    # C is what is left of the rotation once A is undone: however little A is determined beside a
+    # pole, the three together are then the rotation.
+    c = math.atan2(sin * xz - cos * yz, cos * yy - sin * xy)
+    turn = (math.degrees(angle) for angle in (a, math.atan2(-zx, level), c))
+    return np.array([x_m / MM, y_m / MM, z_m / MM, *turn])
 
 
 def pose_error(expected: RigidTransform, measured: RigidTransform) -> tuple[Array, Array]:
@@ -48,3 +56,20 @@ def pose_error(expected: RigidTransform, measured: RigidTransform) -> tuple[Arra
     translation_m = measured.translation - expected.translation
     rotation_rad = (measured.rotation * expected.rotation.inv()).as_rotvec()
     return translation_m, rotation_rad
+
+
+# By their elements: the general functions of scipy give the same and take thirty times as long,
+# which a daemon that writes down every report of every robot does not have.
+def _matrix(values: list[float]) -> Array:
+    """Homogeneous matrix, shape (4, 4), of a written pose."""
+    x_m, y_m, z_m = (value * MM for value in values[:3])
+    a, b, c = (math.radians(value) for value in values[3:])
+    (sa, ca), (sb, cb), (sc, cc) = ((math.sin(angle), math.cos(angle)) for angle in (a, b, c))
+    return np.array(
+        [
+            [ca * cb, ca * sb * sc - sa * cc, ca * sb * cc + sa * sc, x_m],
+            [sa * cb, sa * sb * sc + ca * cc, sa * sb * cc - ca * sc, y_m],
+            [-sb, cb * sc, cb * cc, z_m],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )

@@ -22,6 +22,22 @@ def test_written_form_round_trips(
     assert pose_to_xyzabc(pose_from_xyzabc(written)) == pytest.approx(written, abs=1e-6)
 
 
+@given(mm, mm, mm, angle, angle, angle)
+def test_written_form_is_that_of_scipy(
+    x: float, y: float, z: float, a: float, b: float, c: float
+) -> None:
+    turn = Rotation.from_euler("ZYX", [a, b, c], degrees=True)
+    pose = RigidTransform.from_components([x * 1e-3, y * 1e-3, z * 1e-3], turn)
+    assert pose_from_xyzabc([x, y, z, a, b, c]).as_matrix() == pytest.approx(
+        pose.as_matrix(), abs=1e-12
+    )
+    written = pose_to_xyzabc(pose)
+    assert written[:3] == pytest.approx([x, y, z], abs=1e-9)
+    again = Rotation.from_euler("ZYX", written[3:], degrees=True)
+    assert (again.inv() * turn).magnitude() < 1e-12
+    assert abs(written[4]) <= 90.0
+
+
 def test_a_turns_about_z_then_b_about_the_new_y() -> None:
     pose = pose_from_xyzabc([0, 0, 0, 90, 90, 0])
     assert pose.apply([1, 0, 0]) == pytest.approx([0, 0, -1], abs=1e-12)
@@ -82,5 +98,6 @@ def test_at_the_poles_the_rotation_is_kept_and_nobody_is_warned(middle_deg: floa
     pose = pose_from_xyzabc([1.0, 2.0, 3.0, 40.0, middle_deg, -15.0])
     written = pose_to_xyzabc(pose)
     assert written[4] == pytest.approx(middle_deg)
+    assert written[5] == pytest.approx(0.0, abs=1e-9)
     _, turned_rad = pose_error(pose, pose_from_xyzabc(written))
     assert turned_rad == pytest.approx(np.zeros(3), abs=1e-7)
