@@ -8,10 +8,13 @@ import os
 import sqlite3
 from collections.abc import Callable
 from contextlib import closing
+from functools import cache
 from pathlib import Path
 
-from sqlalchemy import Connection, text
+from sqlalchemy import Connection, Index, text
+from sqlalchemy.dialects import sqlite as sqlite_dialect
 from sqlalchemy.orm import Session
+from sqlalchemy.schema import CreateIndex, CreateTable
 
 from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
@@ -39,7 +42,7 @@ def bring_up_to_date(connection: Connection, file: Path) -> None:
         return
     require_claimed(connection, file, version)
     if version == 0:
-        Base.metadata.create_all(connection)
+        _create_missing(connection)
     else:
         # Before the first change, so that a step that goes wrong costs no run.
         _back_up(file, backup_of(file, version))
@@ -51,6 +54,30 @@ def bring_up_to_date(connection: Connection, file: Path) -> None:
 def schema_version(connection: Connection) -> int:
     """0 in a file without tables."""
     return int(connection.execute(text("PRAGMA user_version")).scalar_one())
+
+
+def _create_missing(connection: Connection) -> None:
+    """The tables and indexes of today that are not there."""
+    for statement in _statements_of_today():
+        connection.exec_driver_sql(statement)
+
+
+@cache
+def _statements_of_today() -> tuple[str, ...]:
+    # Written once: `create_all` takes ten milliseconds for each store to look for each table and to
+    # put the same words together.
+    dialect = sqlite_dialect.dialect()  # type: ignore[no-untyped-call]
+    tables = Base.metadata.sorted_tables
+    indexes = (index for table in tables for index in sorted(table.indexes, key=_name_of))
+    makings = (
+        *(CreateTable(table, if_not_exists=True) for table in tables),
+        *(CreateIndex(index, if_not_exists=True) for index in indexes),
+    )
+    return tuple(str(making.compile(dialect=dialect)) for making in makings)
+
+
+def _name_of(index: Index) -> str:
+    return str(index.name)
 
 
 def backup_of(file: Path, version: int) -> Path:
@@ -88,7 +115,7 @@ def _from_1_to_2(connection: Connection) -> None:
         "record_schema INTEGER NOT NULL DEFAULT 1",
     ):
         connection.execute(text(f"ALTER TABLE runs ADD COLUMN {column}"))
-    Base.metadata.create_all(connection)
+    _create_missing(connection)
 
 
 def _from_2_to_3(connection: Connection) -> None:
@@ -100,7 +127,7 @@ def _from_2_to_3(connection: Connection) -> None:
     """
     for table, column in (("gauges", "gauge_id VARCHAR"), ("ledger", "name VARCHAR")):
         connection.execute(text(f"ALTER TABLE {table} ADD COLUMN {column}"))
-    Base.metadata.create_all(connection)
+    _create_missing(connection)
     with Session(connection, join_transaction_mode="rollback_only") as session:
         seal_unsealed(session, utc_now(), SEALED_FROM_3_ON)
         session.flush()
