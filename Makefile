@@ -7,7 +7,7 @@ SEED ?= 1
 N ?= 20
 
 .PHONY: venv producer demo demo-antenna demo-antenna-calibration demo-insertion demo-calibration ship-demo-calibration cell campaign campaign-mating campaign-faults campaign-tornado campaign-decks campaign-antenna campaign-insertion campaign-planning campaign-planned-demo bench bench-metrology bench-looks bench-hand-eye bench-guard bench-console bench-page page-pictures bench-power-cut bench-robot soak soak-robot bench-cameras soak-cameras bench-antenna-vision \
-	format lint types imports check test test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
+	format lint types imports check test test-in-time test-behind test-parallel test-talking test-computing test-version test-cell test-figures test-explore test-long coverage coverage-begin coverage-add coverage-report lock clean install rollback bundle
 
 venv: $(VENV)/.installed
 
@@ -183,27 +183,52 @@ imports: venv
 check: venv
 	@$(MAKE) --no-print-directory -j 3 --output-sync=target lint types imports
 
-# Whole cells keep real time and leave a processor idle for most of it, and the type checker takes what
-# they leave: it is behind everything that moves or listens.
+# Tests that wait and whole cells leave the processors idle for part of their time. What only computes
+# takes what they leave, and so does the type checker: both are behind everything that moves or listens.
 test: lint imports
-	$(MAKE) test-parallel
-	$(MAKE) --no-print-directory -j 2 BEHIND="nice -n 19" test-cell types
+	$(MAKE) --no-print-directory -j 2 BEHIND="nice -n 19" test-in-time test-behind
+
+test-in-time:
+	$(MAKE) --no-print-directory test-talking
+	$(MAKE) --no-print-directory test-cell
+
+test-behind:
+	$(MAKE) --no-print-directory types
+	$(MAKE) --no-print-directory test-computing
 
 # The tests are spread over the processors already; threads of BLAS beside them only wait for each
 # other, and waiting costs them a third of the processors' time.
-test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-add: export OPENBLAS_NUM_THREADS = 1
+test-parallel test-talking test-computing test-version test-cell test-figures test-explore test-long coverage coverage-add: export OPENBLAS_NUM_THREADS = 1
 
 # Many containers forbid Python to keep compiled modules. Here each of the programs that the tests
 # start would compile all of cellctl anew, and each worker all tests.
-test-parallel test-version test-cell test-figures test-explore test-long coverage coverage-add: export PYTHONDONTWRITEBYTECODE =
+test-parallel test-talking test-computing test-version test-cell test-figures test-explore test-long coverage coverage-add: export PYTHONDONTWRITEBYTECODE =
 
 # Four workers fill two processors, since many tests wait: for programs, servers and timers. Not more
 # where there are more processors: time limits within tests are those of two.
 # What failed beside other tests is run once more, alone, unless it is more than a few.
 AGAIN := --last-failed --last-failed-no-failures none --most-again 3
+STANDARD := -m "not cell and not long and not figures"
 test-parallel: venv
-	$(BIN)/pytest -n 4 --ignore tests/cell -m "not cell and not long and not figures" --durations 25 || \
-		$(BIN)/pytest -m "not cell and not long and not figures" $(AGAIN)
+	$(BIN)/pytest -n 4 --ignore tests/cell $(STANDARD) --durations 25 || $(BIN)/pytest $(STANDARD) $(AGAIN)
+
+# The two halves of these. What computes holds nothing against a clock and comes to no harm by waiting
+# for a processor; it says what it found when it has ended, since other tests speak meanwhile.
+COMPUTING := vision calibration force geometry planning cli/offline cli/planning records/report \
+	$(addprefix fakes/,demo render scenes world) \
+	$(addprefix benchmarks/,antenna calibration decks mating metrology planning samples) \
+	$(addprefix processes/antenna_module/,chain checks commands connector insertion report vision) \
+	$(addprefix processes/deck_to_frame/,checks report) \
+	$(addprefix processes/peg_in_hole/,insertion offline plan plausible report search verdict)
+TALKING := --ignore tests/cell $(COMPUTING:%=--ignore tests/unit/%)
+test-talking: venv
+	$(BIN)/pytest -n 4 $(TALKING) $(STANDARD) --durations 25 || $(BIN)/pytest $(STANDARD) $(AGAIN)
+
+APART := -o cache_dir=.pytest_cache/computing --timeout 900
+test-computing: venv
+	@said=$$({ $(BEHIND) $(BIN)/pytest -n 2 $(APART) $(COMPUTING:%=tests/unit/%) $(STANDARD) --durations 10 || \
+		$(BEHIND) $(BIN)/pytest $(APART) $(STANDARD) $(AGAIN); } 2>&1); ended=$$?; \
+		printf '%s\n' "$$said"; exit $$ended
 
 # What may differ from Python to Python: programs that talk, store, schedule and end. What computes
 # or draws rests on numpy, scipy and OpenCV, of which the lock holds one version for all Pythons, and
@@ -212,8 +237,7 @@ COMPUTES := vision calibration force geometry planning processes procedures fake
 	cli/offline cli/planning records/report hmi/page
 WHERE_PYTHON_MATTERS := $(COMPUTES:%=--ignore tests/unit/%) tests/contracts tests/wire tests/programs tests/unit
 test-version: venv
-	$(BIN)/pytest -n 3 -m "not cell and not long and not figures" $(WHERE_PYTHON_MATTERS) || \
-		$(BIN)/pytest -m "not cell and not long and not figures" $(AGAIN) $(WHERE_PYTHON_MATTERS)
+	$(BIN)/pytest -n 3 $(STANDARD) $(WHERE_PYTHON_MATTERS) || $(BIN)/pytest $(STANDARD) $(AGAIN) $(WHERE_PYTHON_MATTERS)
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv
