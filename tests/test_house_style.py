@@ -4,6 +4,7 @@ import ast
 import statistics
 import tomllib
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import grimp
@@ -39,6 +40,12 @@ FOR_DRIVERS = {"interfaces", "geometry", "errors", "clock"}
 """What of cellctl a driver may import."""
 
 
+@cache
+def parsed(path: Path) -> ast.Module:
+    """Read once: most rules look through all files, and nobody changes a tree."""
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
 def lines(path: Path) -> int:
     return len(path.read_text(encoding="utf-8").splitlines())
 
@@ -59,8 +66,7 @@ def test_every_module_says_what_it_is() -> None:
     silent = [
         str(path.relative_to(ROOT))
         for path in SOURCES
-        if (tree := ast.parse(path.read_text(encoding="utf-8"))).body
-        and not ast.get_docstring(tree)
+        if (tree := parsed(path)).body and not ast.get_docstring(tree)
     ]
     assert silent == []
 
@@ -69,7 +75,7 @@ def test_no_two_classes_have_one_name() -> None:
     # Fakes are left out: they read the same manuals independently, and so use the same words.
     places: dict[str, list[str]] = {}
     for path in (path for path in SOURCES if path.relative_to(ROOT).parts[0] != "fakes"):
-        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        for node in parsed(path).body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
     assert {name: paths for name, paths in places.items() if len(paths) > 1} == {}
@@ -112,7 +118,7 @@ def test_driver_folders_hold_the_same_files(folder: Path) -> None:
 
 @pytest.mark.parametrize("folder", driver_folders(), ids=lambda path: path.name)
 def test_driver_protocols_do_no_io(folder: Path) -> None:
-    tree = ast.parse((folder / "protocol.py").read_text(encoding="utf-8"))
+    tree = parsed(folder / "protocol.py")
     imported = {
         name.name.split(".")[0]
         for node in ast.walk(tree)
@@ -143,7 +149,7 @@ def test_import_contracts_name_every_package_of_the_core() -> None:
 def imported(path: Path) -> set[str]:
     """Modules and names that a file imports, as dotted names."""
     found: set[str] = set()
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for node in ast.walk(parsed(path)):
         if isinstance(node, ast.Import):
             found |= {name.name for name in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -217,7 +223,7 @@ def test_tests_set_times_and_limits_by_arguments() -> None:
     swapped = [
         f"{path.relative_to(ROOT)}:{node.lineno}"
         for path in sorted((ROOT / "tests").rglob("*.py"))
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        for node in ast.walk(parsed(path))
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Attribute)
         and node.func.attr == "setattr"

@@ -42,6 +42,7 @@ def test_cell_file_that_does_not_exist(own: OwnCell) -> None:
     refuses(own.daemon(), "F101", "cell.toml")
 
 
+@pytest.mark.figures  # beside the one that does not exist: both leave by the same way
 def test_cell_file_that_is_no_toml(own: OwnCell) -> None:
     own.cell.write_text("name = fake", encoding="utf-8")
     refuses(own.daemon(), "F101", "line 1")

@@ -5,6 +5,8 @@ That it weighs parts on the small fake cell is shown in `tests/cell`.
 
 from pathlib import Path
 
+import pytest
+
 from tests.guides.package import ROOT, run
 from tests.guides.weighing import SmallCell
 
@@ -16,6 +18,7 @@ def test_the_package_is_short(written: Path) -> None:
     assert sum(bool(line.strip()) for line in code.splitlines()) < MOST_LINES
 
 
+@pytest.mark.figures  # where nobody else checks types: both would write what mypy remembers
 def test_its_types_hold(written: Path) -> None:
     done = run("mypy", "--strict", str(written / "acme_weighing"), path=(written, ROOT))
     assert done.returncode == 0, done.stdout

@@ -43,16 +43,19 @@ def test_a_command_stands_in_its_own_panel_with_its_own_words(listed: Listed) ->
 HEAVY = ("numpy", "scipy", "matplotlib", "cv2", "pandas", "sqlalchemy")
 
 
-def loaded_by(words: str, heavy: Sequence[str] = HEAVY) -> tuple[str, str]:
-    """Output of a command, and which of the heavy packages it has loaded."""
+def loaded_by(*commands: str, heavy: Sequence[str] = HEAVY) -> tuple[str, str]:
+    """Output of commands, one after the other, and what of the heavy packages they have loaded."""
     program = (
         "import sys\n"
-        f"sys.argv = ['cellctl', *{words.split()!r}]\n"
+        "from contextlib import suppress\n"
         "from cellctl.cli.app import main\n"
         "try:\n"
-        "    main()\n"
+        f"    for words in {[words.split() for words in commands]!r}:\n"
+        "        sys.argv = ['cellctl', *words]\n"
+        "        with suppress(SystemExit):\n"
+        "            main()\n"
         "finally:\n"
-        f"    heavy = set({heavy!r}) & set(sys.modules)\n"
+        f"    heavy = set({tuple(heavy)!r}) & set(sys.modules)\n"
         "    print('heavy:', *sorted(heavy), file=sys.stderr)\n"
     )
     done = subprocess.run(
@@ -80,7 +83,7 @@ MESSAGES = ("cellctl.api.local_socket.messages",)
 def test_a_command_that_computes_nothing_loads_nothing_that_computes(
     words: str, besides: tuple[str, ...]
 ) -> None:
-    assert loaded_by(words, HEAVY + besides)[1] == ""
+    assert loaded_by(words, heavy=HEAVY + besides)[1] == ""
 
 
 def test_runs_are_listed_without_the_database_layer(tmp_path: Path) -> None:
@@ -98,15 +101,15 @@ statistics."""
 
 
 @pytest.mark.parametrize(
-    ("name", "besides"),
-    [("deck", ()), ("antenna", ()), ("insertion-pin", FINDS_ROOTS), ("small", FINDS_ROOTS)],
+    ("names", "besides"),
+    [(("deck", "antenna"), ()), (("insertion-pin", "small"), FINDS_ROOTS)],
 )
 def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(
-    name: str, besides: tuple[str, ...]
+    names: tuple[str, ...], besides: tuple[str, ...]
 ) -> None:
     heavy = ("matplotlib", "cv2", "sqlalchemy", "pandas", *besides)
-    out, found = loaded_by(f"check config/{name}.toml", heavy)
-    assert "good." in out, out
+    out, found = loaded_by(*(f"check config/{name}.toml" for name in names), heavy=heavy)
+    assert out.count("good.") == len(names), out
     assert found == ""
 
 

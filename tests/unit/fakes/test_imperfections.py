@@ -149,7 +149,24 @@ def _alike(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bo
     )
 
 
-@pytest.mark.parametrize("name", sorted(CATALOGUE.keys() - set(RENDERED)))
+SEEN = sorted(CATALOGUE.keys() - set(RENDERED))
+
+
+def _first_drawn_by(kind: str) -> str:
+    return min(name for name, one in CATALOGUE.items() if one.drawn_by == kind and name in SEEN)
+
+
+QUICK = {_first_drawn_by(kind) for kind in {CATALOGUE[name].drawn_by for name in SEEN}}
+"""One of each kind of seed. All others are figures."""
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *sorted(QUICK),
+        *(pytest.param(one, marks=pytest.mark.figures) for one in SEEN if one not in QUICK),
+    ],
+)
 def test_each_is_drawn_by_the_seed_that_the_catalogue_says(name: str) -> None:
     effect = _effect(name, hardware_seed=1, seed=1)
     assert effect, "it acts on nothing that can be seen"

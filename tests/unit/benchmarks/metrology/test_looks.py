@@ -45,6 +45,7 @@ def test_every_look_is_measured_and_its_uncertainty_is_honest(look: str) -> None
     assert np.mean(errors.squared_2d) < (13.0 if look == "bright wall" else 6.5)
 
 
+@pytest.mark.figures
 def test_a_stated_width_of_a_narrow_cone_makes_its_centre_surer() -> None:
     view = drawn_scene("narrow cone", 2).view
 

@@ -5,7 +5,9 @@ import pytest
 from benchmarks.robot.acks import WAYS, AckRow, main, table
 
 
-@pytest.mark.parametrize("way", ["SJL/1", "remote interface (RPC)"])
+@pytest.mark.parametrize(
+    "way", ["SJL/1", pytest.param("remote interface (RPC)", marks=pytest.mark.figures)]
+)
 def test_a_way_is_measured_beside_a_bare_socket(
     way: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

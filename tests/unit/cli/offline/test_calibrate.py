@@ -480,6 +480,7 @@ BENT = ("--board-shape", "bent", "--lens", "five")
 """Nothing is left for the data to decide, which takes its time."""
 
 
+@pytest.mark.figures  # solves three times; the checks themselves are tried on the solver
 def test_squares_of_another_size_are_noticed_by_what_is_known(images: Path, tmp_path: Path) -> None:
     out, baseline_mm = (
         tmp_path / "head.json",
