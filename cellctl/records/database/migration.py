@@ -14,7 +14,7 @@ from pathlib import Path
 from sqlalchemy import Connection, Index, text
 from sqlalchemy.dialects import sqlite as sqlite_dialect
 from sqlalchemy.orm import Session
-from sqlalchemy.schema import CreateIndex, CreateTable
+from sqlalchemy.schema import CreateIndex, CreateTable, ExecutableDDLElement
 
 from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
@@ -66,10 +66,10 @@ def _create_missing(connection: Connection) -> None:
 def _statements_of_today() -> tuple[str, ...]:
     # Written once: `create_all` takes ten milliseconds for each store to look for each table and to
     # put the same words together.
-    dialect = sqlite_dialect.dialect()  # type: ignore[no-untyped-call]
+    dialect = sqlite_dialect.dialect()
     tables = Base.metadata.sorted_tables
     indexes = (index for table in tables for index in sorted(table.indexes, key=_name_of))
-    makings = (
+    makings: tuple[ExecutableDDLElement, ...] = (
         *(CreateTable(table, if_not_exists=True) for table in tables),
         *(CreateIndex(index, if_not_exists=True) for index in indexes),
     )

@@ -5,18 +5,21 @@ import re
 import shutil
 import sqlite3
 from collections.abc import Iterator, Mapping
+from contextlib import closing
 from datetime import datetime
 from pathlib import Path
 from typing import Any
 
 import pytest
+from sqlalchemy import create_engine
 from typer.testing import CliRunner
 
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database import migration
-from cellctl.records.database.schema_version import SCHEMA_VERSION
+from cellctl.records.database.schema import Base
+from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.entries import LoopPass, PoseOrigin
 from cellctl.records.figures import figure
 from cellctl.records.report.export import export_run
@@ -357,3 +360,20 @@ def test_an_old_run_has_a_report_without_its_process(
     text = " ".join(read(export_run(store, number, tmp_path)).texts)
     assert "deck-to-frame" in text
     assert ("approach: speed" in text) == (number <= 3)
+
+
+def test_a_new_store_has_the_tables_and_indexes_of_the_schema(tmp_path: Path) -> None:
+    RunStore(tmp_path / "new").close()
+    engine = create_engine(f"sqlite:///{tmp_path / 'drawn.sqlite'}")
+    Base.metadata.create_all(engine)
+    engine.dispose()
+    drawn = made_in(tmp_path / "drawn.sqlite")
+    assert len(drawn) > 20
+    assert made_in(tmp_path / "new" / FILE) == drawn
+
+
+def made_in(file: Path) -> list[tuple[str, str, str]]:
+    """Kind, name and words of all that a database is made of."""
+    with closing(sqlite3.connect(file)) as connection:
+        rows = connection.execute("SELECT type, name, sql FROM sqlite_master")
+        return sorted((kind, name, str(sql)) for kind, name, sql in rows)
