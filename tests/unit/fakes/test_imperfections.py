@@ -152,7 +152,7 @@ def _alike(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bo
 SEEN = sorted(CATALOGUE.keys() - set(RENDERED))
 
 
-def _first_drawn_by(kind: str) -> str:
+def _first_drawn_by(kind: str | None) -> str:
     return min(name for name, one in CATALOGUE.items() if one.drawn_by == kind and name in SEEN)
 
 
