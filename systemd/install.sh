@@ -148,7 +148,10 @@ tell_the_system() {
     [ -z "$INTO" ] || return 0
     systemd-sysusers
     systemd-tmpfiles --create cellctl.conf
-    [ ! -d /run/systemd/system ] || systemctl daemon-reload
+    [ -d /run/systemd/system ] || return 0
+    systemctl daemon-reload
+    # Page and forwarder go on beside a daemon that is stopped, with the release that they began with.
+    systemctl try-restart cellctl-hmi cellctl-forward
 }
 
 install_release() {

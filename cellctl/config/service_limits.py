@@ -8,11 +8,13 @@ import ipaddress
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlsplit
 
-from cellctl.config.cell import CellConfig
+from cellctl.config.cell import CellConfig, FleetConfig
 
 _PEERS = ("host", "robot_address")
 _SOCKET_CAN = "socketcan"
+_HEAD = "# Made by `cellctl service-limits"
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +28,7 @@ class ServiceLimits:
     can_channels: tuple[str, ...]
     """Interfaces of SocketCAN, such as can0."""
     open_ends: tuple[str, ...]
-    """Devices whose peers nobody can tell from the file, and why."""
+    """Whose peers nobody can tell from the file, and why."""
 
 
 def service_limits(cell: CellConfig) -> ServiceLimits:
@@ -58,14 +60,32 @@ def drop_in(name: str, limits: ServiceLimits) -> str:
     return "".join(f"{line}\n" for line in _lines(name, limits))
 
 
+def forwarder_limits(fleet: FleetConfig) -> ServiceLimits:
+    """The limits of the unit that delivers records: the server of the fleet alone."""
+    host = urlsplit(fleet.url).hostname or ""
+    known = tuple(_addresses([host]))
+    open_ends = () if known else (f"fleet.url: {host} is a name",)
+    return ServiceLimits(known, (), (), open_ends)
+
+
+def forwarder_drop_in(name: str, limits: ServiceLimits) -> str:
+    """The limits as a drop-in of the unit ``cellctl-forward.service``."""
+    lines = (f"{_HEAD} --forwarder` from the cell file of {name}.", "[Service]", *_network(limits))
+    return "".join(f"{line}\n" for line in lines)
+
+
 def _lines(name: str, limits: ServiceLimits) -> Iterator[str]:
-    yield f"# Made by `cellctl service-limits` from the cell file of {name}."
+    yield f"{_HEAD}` from the cell file of {name}."
     yield "[Service]"
     yield "# The first line empties the list of the unit."
     yield "DeviceAllow="
     yield from (f"DeviceAllow={device} rw" for device in limits.devices)
     if limits.can_channels:
         yield "RestrictAddressFamilies=AF_CAN"
+    yield from _network(limits)
+
+
+def _network(limits: ServiceLimits) -> Iterator[str]:
     yield "IPAddressDeny=any"
     yield "IPAddressAllow=localhost"
     yield from (f"IPAddressAllow={peer}" for peer in limits.peers)

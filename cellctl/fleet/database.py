@@ -118,6 +118,8 @@ def _engine(url: URL, limits: FleetTimeLimits) -> Engine:
         connect_args={
             "connect_timeout": limits.connect_s,
             "application_name": "cellctl",
+            # From a database that names no encoding the driver would give texts as bytes.
+            "client_encoding": "utf8",
             # A server that has lost its power says nothing: without these a read waits for ever.
             "keepalives_idle": max(1, round(limits.silence_s / 2)),
             "keepalives_interval": max(1, round(limits.silence_s / 4)),

@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from cellctl.errors.records import StoreUnavailable
+from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.entered.gauges import GAUGE_HOLES, beyond_limit, hole_limits
 from cellctl.records.entries import RunHead, RunResult
@@ -58,8 +59,9 @@ def listed_runs(folder: Path, limit: int, wanted: RunFilter = ALL) -> list[Liste
 
 def _read(file: Path, limit: int, wanted: RunFilter) -> list[ListedRun] | None:
     """The runs of one file; None for a store of another version."""
+    access = ReadAccess(file)
     try:
-        with closing(sqlite3.connect(file, timeout=_BUSY_TIMEOUT_S)) as connection:
+        with closing(access.connect(_BUSY_TIMEOUT_S)) as connection:
             connection.row_factory = sqlite3.Row
             # One view: a gauge may be entered between the queries.
             connection.execute("BEGIN")
@@ -71,6 +73,7 @@ def _read(file: Path, limit: int, wanted: RunFilter) -> list[ListedRun] | None:
             spoilt = set(_spoilt(connection, good))
     except sqlite3.Error as error:
         raise StoreUnavailable(f"{file}: {error}") from error
+    access.check()
     return [ListedRun(head, head.number in spoilt) for head in heads]
 
 

@@ -24,6 +24,7 @@ from cellctl.errors.records import (
 )
 from cellctl.files.atomic_files import make_folder_durably
 from cellctl.records.database import migration
+from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
 LOCK_WAIT_S = 5.0
@@ -52,7 +53,8 @@ class Database:
         self._failed: str | None = None
         if not (create or file.exists()):
             raise StoreUnavailable(f"there is no {file}")
-        self._engine = _engine(file, lock_wait_s)
+        self._access = ReadAccess(file)
+        self._engine = _engine(file, self._access, lock_wait_s)
         try:
             make_folder_durably(file.parent)
             # A store of today is opened without a write, so without waiting for a writer's lock.
@@ -122,12 +124,13 @@ class Database:
                 yield session
         except DBAPIError as error:
             raise StoreUnavailable(_reason(error)) from error
+        self._access.check()
 
 
-def _engine(file: Path, lock_wait_s: float) -> Engine:
+def _engine(file: Path, access: ReadAccess, lock_wait_s: float) -> Engine:
     # Not as a text, in which a question mark of a folder's name ends the path.
     url = URL.create("sqlite", database=str(file))
-    engine = create_engine(url, connect_args={"timeout": lock_wait_s, "check_same_thread": False})
+    engine = create_engine(url, creator=lambda: access.connect(lock_wait_s, one_thread=False))
 
     @event.listens_for(engine, "connect")
     def _settings(connection: Any, _record: Any) -> None:

@@ -1,5 +1,6 @@
 """The drop-in of the service names what the cell file names, and nothing else."""
 
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -72,3 +73,30 @@ def test_what_nobody_can_tell_is_told(template: CellConfig) -> None:
     assert done.exit_code == 0, done.output
     assert "names no address" in done.stderr
     assert "IPAddressDeny=any" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("host", "peers"),
+    [("192.168.7.2:5433", ["192.168.7.2"]), ("[fd00::2]", ["fd00::2"]), ("db.plant", [])],
+)
+def test_the_forwarder_reaches_the_server_of_the_fleet_alone(
+    tmp_path: Path, host: str, peers: list[str]
+) -> None:
+    shutil.copytree(CONFIG, tmp_path / "config")
+    file = tmp_path / "config" / "deck.toml"
+    with file.open("a", encoding="utf-8") as cell:
+        cell.write(f'\n[fleet]\nurl = "postgresql://forward@{host}/fleet"\n')
+    done = CliRunner().invoke(whole_app(), ["service-limits", "--forwarder", str(file)])
+    assert done.exit_code == 0, done.output
+    lines = done.stdout.splitlines()
+    assert "IPAddressDeny=any" in lines
+    allowed = [line.partition("=")[2] for line in lines if line.startswith("IPAddressAllow=")]
+    assert allowed == ["localhost", *peers]
+    assert bool(done.stderr) == (not peers)
+
+
+def test_without_a_fleet_nothing_is_delivered() -> None:
+    done = CliRunner().invoke(
+        whole_app(), ["service-limits", "--forwarder", str(CONFIG / "deck.toml")]
+    )
+    assert done.exit_code != 0

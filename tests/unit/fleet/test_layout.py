@@ -6,7 +6,12 @@ from sqlalchemy.exc import DBAPIError
 
 from cellctl.errors.records import FleetDiffers, FleetRefused
 from cellctl.fleet import layout, recall
-from tests.unit.fleet.conftest import NORTH, SOUTH, Fleet, deliver_all
+from cellctl.fleet.address import PASSWORD as PASSWORD_VARIABLE
+from cellctl.fleet.address import address
+from cellctl.fleet.database import FleetDatabase
+from tests.rigs import postgres
+from tests.rigs.postgres import PASSWORD, PostgresServer
+from tests.unit.fleet.conftest import NORTH, QUICK, SOUTH, Fleet, deliver_all
 from tests.unit.fleet.test_delivery import assert_whole, everything
 
 
@@ -41,6 +46,19 @@ def test_a_cell_may_not(fleet: Fleet, statement: str) -> None:
     filled = statement.format(north=fleet.places[NORTH], south=fleet.places[SOUTH])
     said = refused(fleet, "forward_north", filled)
     assert "permission denied" in said or "must be owner" in said
+
+
+def test_a_database_that_names_no_encoding_is_one_of_a_fleet_too(
+    server: PostgresServer, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A server that was set up in the locale C makes such ones."""
+    monkeypatch.setenv(PASSWORD_VARIABLE, PASSWORD)
+    server.execute("CREATE DATABASE plain TEMPLATE template0 ENCODING 'SQL_ASCII'")
+    owner = FleetDatabase(address(server.url(postgres.OWNER, "plain")), QUICK)
+    layout.create(owner)
+    layout.add_cell(owner, SOUTH, "forward_south")
+    assert [cell.name for cell in recall.cells(owner)] == [SOUTH]
+    owner.close()
 
 
 @pytest.mark.parametrize(
