@@ -126,6 +126,11 @@ bench-power-cut: N = 100
 bench-power-cut: venv
 	$(BIN)/python -m benchmarks.power_cut -n $(N)
 
+# On a computer that has nothing else to do. From the disk and not from memory, by root: --from-disk.
+.PHONY: bench-start
+bench-start: venv
+	$(BIN)/python -m benchmarks.cold_start $(ARGS)
+
 bench-robot: venv
 	$(BIN)/python -m benchmarks.robot.rpc
 	$(BIN)/python -m benchmarks.robot.acks

@@ -1,6 +1,6 @@
-"""From the start of the daemon until it is ready, on the fake cell: `python -m benchmarks.cold_start`.
+"""How long the daemon of the fake cell takes to be ready: `python -m benchmarks.cold_start`.
 
-What it waits for is itself: the processor's time beside it tells a slow start from a busy PC.
+The processors' time beside it tells a slow start from a busy PC.
 """
 
 import os
@@ -64,13 +64,14 @@ def _start(own: OwnCell, *, from_disk: bool) -> Start:
     begun_s = time.monotonic()
     daemon = own.daemon()
     daemon.ready()
-    start = Start(time.monotonic() - begun_s, _processors_s(daemon))
+    start = Start(time.monotonic() - begun_s, processors_s(daemon))
     if code := daemon.interrupt(signal.SIGTERM):
         raise RuntimeError(f"the daemon ended with {code}: {daemon.stderr[-500:]}")
     return start
 
 
-def _processors_s(daemon: Program) -> float:
+def processors_s(daemon: Program) -> float:
+    """Time of the processors that a program and its descendants have used."""
     ticks = 0
     for number in daemon.descendants():
         try:
