@@ -131,7 +131,7 @@ put_files() {
     done
 }
 
-# Manual page and completion of a release, and its command for everybody.
+# Manual page and completion of a release, and its commands for everybody.
 put_help() {
     program=$1/.venv/bin/cellctl
     share=$INTO/usr/share
@@ -141,7 +141,9 @@ put_help() {
     _CELLCTL_COMPLETE=source_bash "$program" >"$share/bash-completion/completions/cellctl"
     _CELLCTL_COMPLETE=source_zsh "$program" >"$share/zsh/vendor-completions/_cellctl"
     _CELLCTL_COMPLETE=source_fish "$program" >"$share/fish/vendor_completions.d/cellctl.fish"
-    ln -sfn "$INTO$PREFIX/current/.venv/bin/cellctl" "$INTO/usr/local/bin/cellctl"
+    for name in cellctl cellctl-hmi; do
+        ln -sfn "$INTO$PREFIX/current/.venv/bin/$name" "$INTO/usr/local/bin/$name"
+    done
 }
 
 tell_the_system() {

@@ -19,6 +19,7 @@ from cellctl.api.modbus.document import register_map_document
 from cellctl.cli.commands import whole_app
 from cellctl.cli.faults import catalogue_page
 from cellctl.fault_catalogue import shipped_faults
+from cellctl.hmi.main import app as page_app
 from cellctl.packml.document import state_machine_document
 from fakes.__main__ import app as fakes_app
 from fakes.demo.app import app as demo_app
@@ -38,7 +39,7 @@ _LINK = re.compile(r"(?<!!)\[[^\]]+\]\(([^)\s]+)\)|!\[[^\]]*\]\(([^)\s]+)\)")
 _FENCE = re.compile(r"^```.*?^```", re.DOTALL | re.MULTILINE)
 _INLINE = re.compile(r"`([^`\n]+)`")
 _PATH = re.compile(r"(?:cellctl|drivers|fakes|benchmarks|tests|systemd)/[\w./-]+")
-_PROGRAMS = ("make ", "cellctl ", "python -m ", ".venv/bin/")
+_PROGRAMS = ("make ", "cellctl ", "cellctl-hmi ", "python -m ", ".venv/bin/")
 _SETTING = re.compile(r"[A-Z]+=.+")
 
 
@@ -121,6 +122,8 @@ def exists(written: Written) -> None:
             assert unknown == []
             return
         options_exist(app, words[2:] if app is demo_app else words[1:])
+    elif words[0] == "cellctl-hmi":
+        options_exist(page_app, words[1:])
     elif words[:3] == ["python", "-m", "fakes"]:
         inner = {"demo": demo_app, "plc": plc_app}.get(words[3] if len(words) > 3 else "")
         options_exist(inner or fakes_app, words[4:] if inner else words[3:])

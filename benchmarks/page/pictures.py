@@ -14,7 +14,7 @@ from benchmarks.page.person import Person, chromium
 from tests.rigs.whole_cell.own_cell import ROOT, OwnCell
 
 SIZES = ("1280x800", "1080x1920", "1024x600")
-DOCUMENTED = ("run", "maintenance", "aborted", "alarms", "history", "calibration", "health")
+DOCUMENTED = ("run", "maintenance", "aborted", "alarms", "history", "calibration", "line", "health")
 """Those that the documentation shows, besides the dialog of Start."""
 
 

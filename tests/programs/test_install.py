@@ -76,7 +76,8 @@ def test_one_command_goes_back_and_another_forth(upgraded: Path) -> None:
     assert (upgraded / "usr/share/man/man1/cellctl.1").read_text().startswith(".TH CELLCTL 1")
     completion = upgraded / "usr/share/bash-completion/completions/cellctl"
     assert "complete -o default -F _cellctl_completion cellctl" in completion.read_text()
-    assert (upgraded / "usr/local/bin/cellctl").exists()
+    for program in ("cellctl", "cellctl-hmi"):
+        assert (upgraded / "usr/local/bin" / program).exists()
 
 
 def test_a_store_that_the_older_release_cannot_read_is_not_left_to_it(upgraded: Path) -> None:
