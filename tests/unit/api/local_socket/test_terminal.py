@@ -28,7 +28,7 @@ from cellctl.api.local_socket.report import StatusReport
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.terminal import Terminal
 from cellctl.api.local_socket.users import Users
-from cellctl.errors.link import LinkLost, StaleData
+from cellctl.errors.link import DeviceAway, LinkLost, StaleData
 from cellctl.errors.local import MessageMalformed
 from cellctl.errors.records import StoreUnavailable
 from cellctl.guard.report import GuardTrip, TripReason
@@ -213,12 +213,15 @@ async def test_what_is_broken_is_said_and_not_raised(
         raise StoreUnavailable("disk gone")
 
     rig.bench.cell.aux_2.faults["state"] = StaleData("2 s")
+    rig.bench.cell.unanswered["head_1"] = DeviceAway("head_1: no answer within 2 s")
     rig.bench.cell.guard.trip = GuardTrip(TripReason.RAW_LIMIT, 1.0, "Fz 60 N", 2, 60.0)
     (rig.bench.calibrations.path / "head_1.json").unlink()
     monkeypatch.setattr(RunStore, "runs", gone)
     report = await operator.status()
     assert "F207" in report.links["robots.aux_2"]
     assert report.links["robots.main"] == ""
+    assert "no answer within 2 s" in report.links["stereo_cameras.head_1"]
+    assert report.links["stereo_cameras.head_2"] == ""
     assert report.guard_trip == "raw limit: Fz 60 N"
     assert "disk gone" in report.records
     assert "F632" in report.calibrations[0].problem
