@@ -497,7 +497,8 @@ def test_squares_of_another_size_are_noticed_by_what_is_known(images: Path, tmp_
     assert "nothing tells whether squares of 25 mm are right" in silent.output
 
 
-def test_stereo_with_wrong_inputs(images: Path, tmp_path: Path) -> None:
+@pytest.mark.figures  # looks for boards in 22 images; each is tried on corners and board images
+def test_stereo_with_images_of_something_else(images: Path, tmp_path: Path) -> None:
     out = tmp_path / "head.json"
     result = call("stereo", "--left", images / "l-0[0-2].png", "--right", images / "r-0[0-2].png",
                   "--board", "8x6", "--square-mm", 20, "--out", out)  # fmt: skip
@@ -505,6 +506,11 @@ def test_stereo_with_wrong_inputs(images: Path, tmp_path: Path) -> None:
     result = call("stereo", "--left", images / "r-0[0-7].png", "--right", images / "l-0[0-7].png",
                   "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip
     assert isinstance(result.exception, CalibrationCamerasSwapped)
+    assert not out.exists()
+
+
+def test_stereo_with_an_image_too_few(images: Path, tmp_path: Path) -> None:
+    out = tmp_path / "head.json"
     result = call("stereo", "--left", images / "l-0*.png", "--right", images / "r-*.png",
                   "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip
     assert "10 left but 12 right images" in str(result.exception)

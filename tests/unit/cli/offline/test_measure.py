@@ -142,7 +142,9 @@ def test_one_image_for_both_cameras_is_named(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-@pytest.mark.parametrize("outward", ["", "outward_axis = [0.0, 0.0, 1.0]\n"])
+@pytest.mark.parametrize(
+    "outward", ["", pytest.param("outward_axis = [0.0, 0.0, 1.0]\n", marks=pytest.mark.figures)]
+)
 def test_a_mirrored_drawing_is_named(folder: Path, sign: float, outward: str) -> None:
     """Holes in a plane fit their mirror image as seen from the back, with the same residuals."""
 
