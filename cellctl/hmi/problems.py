@@ -44,6 +44,7 @@ def add_handlers(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _http)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(CellError, _fault)
+    app.add_exception_handler(Exception, _unexpected)
 
 
 def answer(
@@ -75,6 +76,11 @@ async def _problem(request: Request, error: Exception) -> JSONResponse:
 async def _http(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)
     return answer(request, error.status_code, "http", str(error.detail))
+
+
+async def _unexpected(request: Request, _error: Exception) -> JSONResponse:
+    # What went wrong is in the log, where no stranger reads it.
+    return answer(request, 500, "unexpected", "a defect of the page's process; see its log")
 
 
 async def _invalid(request: Request, error: Exception) -> JSONResponse:

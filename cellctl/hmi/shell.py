@@ -2,9 +2,11 @@
 
 from collections.abc import Set
 
+from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from cellctl.hmi.hosts import host_name
+from cellctl.hmi.problems import answer
 
 BODY_LIMIT = 64 * 1024
 POLICY = (
@@ -34,11 +36,13 @@ class Shell:
         headers = dict(scope["headers"])
         # Against DNS rebinding: a foreign name that leads here is not ours to answer.
         if host_name(headers.get(b"host", b"").decode("latin-1")) not in self._hosts:
-            await _plain(send, 421, b"this name is not served here")
+            refused = answer(Request(scope), 421, "host", "this name is not served here")
+            await refused(scope, receive, send)
             return
         length = headers.get(b"content-length", b"0")
         if not length.isdigit() or int(length) > BODY_LIMIT or b"transfer-encoding" in headers:
-            await _plain(send, 413, b"the body is too long")
+            refused = answer(Request(scope), 413, "body", "the body is too long")
+            await refused(scope, receive, send)
             return
 
         async def with_headers(message: Message) -> None:
@@ -51,9 +55,3 @@ class Shell:
             await send(message)
 
         await self._app(scope, receive, with_headers)
-
-
-async def _plain(send: Send, status: int, text: bytes) -> None:
-    headers = [(b"content-type", b"text/plain"), (b"content-length", str(len(text)).encode())]
-    await send({"type": "http.response.start", "status": status, "headers": headers})
-    await send({"type": "http.response.body", "body": text})
