@@ -65,7 +65,8 @@ class MujocoOracle:
     def _distance_m(self, first: Solid, second: Solid) -> float:
         ids = self._ids[first.name], self._ids[second.name]
         found_m = mujoco.mj_geomDistance(self._model, self._data, *ids, FAR_M, np.zeros(6))
-        return max(0.0, float(found_m))
+        # How deep is not compared; but bodies that meet must not pass where no margin is asked for.
+        return max(-1e-9, float(found_m))
 
     def _required_m(self, first: Solid, second: Solid, *, approach: bool) -> float:
         pair = frozenset((first.name, second.name))

@@ -52,6 +52,7 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
     arms = {name: _arm(cell, document, name) for name in document.robots}
     _check_bases(arms)
     solids = tuple(_solids(document, path.parent))
+    _check_movers(arms, solids)
     _check_approaches(document, solids, path)
     approaches = {frozenset(near.bodies): near.clearance_mm * MM for near in document.approaches}
     heads = {name: _head(cell, name, keys) for name, keys in document.stereo_cameras.items()}
@@ -170,6 +171,13 @@ def _capsule(keys: CapsuleKeys) -> tuple[Shape, Array]:
         turn = Rotation.align_vectors([way_m], [[0.0, 0.0, 1.0]])[0]
     pose = RigidTransform.from_components((start_m + end_m) / 2, turn)
     return CapsuleShape(keys.radius_mm * MM, length_m), pose.as_matrix()
+
+
+def _check_movers(arms: Mapping[str, PlannedArm], solids: Sequence[Solid]) -> None:
+    """An arm of which nothing moves would find every one of its ways free."""
+    for name in arms:
+        if all(solid.still for solid in solids if solid.arm == name):
+            raise ArmNotDescribed(f"robots.{name}: all of its bodies stand on its base (link 0)")
 
 
 def _check_approaches(document: ModelDocument, solids: Sequence[Solid], path: Path) -> None:

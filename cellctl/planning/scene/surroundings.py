@@ -15,6 +15,8 @@ from cellctl.planning.scene.solid import Solid
 Clearances = Mapping[frozenset[str], float]
 """Clearances in m, for pairs of bodies that a process brings together."""
 
+_MEETING_M = -1e-9
+"""Distance of bodies that meet: less than nothing, so that no margin of 0 lets them."""
 _WITH_POINTS = fcl.DistanceRequest(enable_nearest_points=True)
 
 
@@ -118,7 +120,7 @@ class Surroundings:
     def _distance_m(self, pair: int, result: fcl.DistanceResult) -> float:
         first, second = self._object(self._first[pair]), self._object(self._second[pair])
         # FCL gives -1 for bodies that meet, which says nothing of how deep they are in each other.
-        return max(0.0, float(fcl.distance(first, second, _WITH_POINTS, result)))
+        return max(_MEETING_M, float(fcl.distance(first, second, _WITH_POINTS, result)))
 
     def _place_m(self, pair: int, result: fcl.DistanceResult, *, touching: bool) -> Array:
         if not touching:

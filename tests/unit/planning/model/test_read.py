@@ -122,6 +122,15 @@ def test_a_robot_that_the_cell_does_not_have_is_refused(tmp_path: Path) -> None:
         read_model(CELL, path, DECK.parent)
 
 
+def test_an_arm_of_which_nothing_moves_is_refused(tmp_path: Path) -> None:
+    text = Path("config/deck.model.toml").read_text(encoding="utf-8")
+    start = text.index("turret", text.index("[robots.aux_1.bodies]"))
+    path = tmp_path / "model.toml"
+    path.write_text(text[:start] + text[text.index("[robots.aux_2]") :], encoding="utf-8")
+    with pytest.raises(ArmNotDescribed, match="aux_1: all of its bodies stand on its base"):
+        read_model(CELL, path, DECK.parent)
+
+
 @given(st.binary(max_size=200))
 def test_any_bytes_are_refused_with_a_number(content: bytes) -> None:
     with TemporaryDirectory() as folder:

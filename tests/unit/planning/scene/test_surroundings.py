@@ -1,8 +1,11 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.planning.scene.cell_scene import Standpoint
+from cellctl.planning.ways.sweep import sweep
 from tests.rigs.mujoco_oracle import MujocoOracle
 from tests.unit.planning.deck_cell import deck_scene
 
@@ -60,6 +63,26 @@ def test_no_body_is_farther_from_an_axis_than_its_lever() -> None:
                 ]
                 moved = np.linalg.norm((corners @ first.T - corners @ second.T)[:, :3], axis=1)
                 assert moved.max() <= lever_m[joint] * turn * (1 + 1e-6)
+
+
+def test_links_of_one_arm_that_meet_have_no_room() -> None:
+    """Between them no margin is asked for, so that nothing but the meeting itself tells."""
+    folded_rad = np.radians([0.0, -90.0, 144.0, 0.0, 120.0, 90.0])
+    around = SCENE.around("main", {})
+    assert not around.has_room(folded_rad, 0.0)
+    found = around.narrowest(folded_rad)
+    assert found.slack_m < 0.0
+    assert {found.first, found.second} == {"main.upper_arm", "main.deck"}
+    assert MujocoOracle(SCENE).narrowest_slack_m("main", {"main": folded_rad}) < 0.0
+    assert sweep(around, np.vstack([folded_rad, folded_rad])).gap.slack_m < 0.0
+
+
+def test_bodies_without_margins_may_not_meet_either() -> None:
+    solids = tuple(replace(solid, margin_m=0.0) for solid in SCENE.solids)
+    around = replace(SCENE, solids=solids).around("main", {})
+    low_rad = np.radians([0.0, 20.0, 144.0, 0.0, 90.0, 90.0])
+    assert around.narrowest(low_rad).slack_m < 0.0
+    assert not around.has_room(low_rad, 0.0)
 
 
 def test_an_approach_lets_two_bodies_come_near() -> None:
