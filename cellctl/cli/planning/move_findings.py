@@ -33,10 +33,13 @@ class MoveFindings:
                 self.bad_moves += 1
                 reached = reached and not isinstance(checked.fault, PlaceUnreachable)
                 yield str(checked.fault)
-        # Where an arm cannot come to a place, zones cannot be held against it either.
-        for gap in zone_findings(self._scene) if reached else ():
-            self.gaps += 1
-            yield str(gap)
+        if reached:
+            for gap in zone_findings(self._scene):
+                self.gaps += 1
+                yield str(gap)
+        elif self._scene.cell.zones:
+            # Where an arm cannot come to a place, zones cannot be held against it either.
+            yield "zones were not looked at: first an arm has to reach every place of its moves"
 
     def require_moves(self) -> None:
         """Raise ``NoMovesStated`` where there was none: nothing checked is not the same as

@@ -23,6 +23,8 @@ class Standpoint:
     label: str
     """Name in findings, for example ``measuring``."""
     joints_rad: tuple[float, ...]
+    reach_m: float = 0.0
+    """How far any of its bodies may be from there; it is kept free too."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -116,5 +118,6 @@ class CellScene:
                 if solid.still and number:
                     continue
                 pose = frames[solid.link] @ solid.link_T_shape
-                found.append(StandingSolid(solid, pose, f"{solid.name} at {standpoint.label}"))
+                wider = replace(solid, margin_m=solid.margin_m + standpoint.reach_m)
+                found.append(StandingSolid(wider, pose, f"{solid.name} at {standpoint.label}"))
         return found

@@ -6,6 +6,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli.planning.app import app
+from cellctl.cli.planning.move_findings import MoveFindings
 from cellctl.cli.planning.opening import open_scene
 from cellctl.config import load_cell
 from cellctl.config.stated.moves import StatedMove
@@ -15,11 +16,12 @@ from cellctl.errors.config import (
     NoMovesStated,
     NoViewsStated,
     OutputNotWritten,
+    PlaceUnreachable,
     PlanningNotInstalled,
 )
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.ways import check_moves, check_zones
-from cellctl.planning.ways.check_moves import stated_moves
+from cellctl.planning.ways.check_moves import CheckedMove, stated_moves
 
 DECK = "config/deck.toml"
 
@@ -75,6 +77,19 @@ def test_what_is_free_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "moves are free" in output
     assert "zones that keep arms apart wherever they could meet: 2" in output
     assert "stand-ins, not measured: " in output
+
+
+def test_zones_that_were_not_looked_at_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Zones are held against places; an arm that does not reach them leaves nothing to hold."""
+    scene = open_scene(Path(DECK), None)
+    move = next(iter(stated_moves(scene)))
+    unreached = CheckedMove(move, None, PlaceUnreachable("main: far"))
+    monkeypatch.setattr(check_moves, "check_moves", lambda _scene: [unreached])
+    findings = MoveFindings(scene)
+    fault, zones = list(findings)
+    assert fault.startswith("F125")
+    assert zones.startswith("zones were not looked at: ")
+    assert (findings.bad_moves, findings.gaps) == (1, 0)
 
 
 def test_the_arms_of_both_shipped_deck_cells_go_the_same_ways() -> None:

@@ -2,10 +2,14 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
-from cellctl.config.stated.moves import MoveKind
-from cellctl.planning.scene.cell_scene import CellScene
+from cellctl.config.stated.moves import MoveKind, StatedMove, StatedPlace
+from cellctl.planning.model.shapes import CapsuleShape
+from cellctl.planning.scene.cell_scene import CellScene, Standpoint
+from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways import check_zones
 from cellctl.planning.ways.check_moves import stated_moves
 from cellctl.planning.ways.check_zones import zone_findings
@@ -58,6 +62,37 @@ def test_a_head_that_may_stand_beside_its_box_and_meet_the_main_arm_is_found(
     (text,) = found(monkeypatch, scene)
     for part in ("beside_head_2", "aux_2.head", "aux_2 is between", "mm of its base"):
         assert part in text
+
+
+def test_a_body_between_two_places_that_are_looked_at_is_found(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The main arm turns by 0.9°, outside of its boxes; half way its tip meets one of head 2."""
+    main, aux = SCENE.arms["main"], SCENE.arms["aux_2"]
+    home_rad, measuring_rad = main.taught_rad("home"), aux.taught_rad("measuring")
+    turn_rad = np.radians([0.45, 0.0, 0.0, 0.0, 0.0, 0.0])
+    tip = RigidTransform.from_translation([0.0, 0.0, 0.3]).as_matrix()
+    at_head = np.linalg.inv(aux.link_frames(measuring_rad)[6]) @ main.link_frames(home_rad)[6] @ tip
+    ball = CapsuleShape(0.0025, 0.0)
+    tips = (
+        Solid("main.tip", "main", 6, tip, ball, 0.0, stand_in=False),
+        Solid("aux_2.tip", "aux_2", 6, at_head, ball, 0.0, stand_in=False),
+    )
+    there = StatedPlace("here", measuring_rad), StatedPlace("there", measuring_rad + 1e-5)
+    ends = [StatedPlace(str(sign), home_rad + sign * turn_rad) for sign in (-1, 1)]
+    moves = [
+        StatedMove("main", MoveKind.JOINT, ends[0], ends[1], {}),
+        StatedMove("aux_2", MoveKind.JOINT, *there, {}),
+    ]
+    monkeypatch.setattr(check_zones, "stated_moves", lambda _scene: moves)
+    third = [solid for solid in SCENE.solids if solid.arm == "aux_1"]
+    scene = replace(SCENE, solids=(*tips, *third))
+    apart = scene.around("main", {"aux_2": [Standpoint("here", tuple(measuring_rad))]})
+    for end in ends:
+        assert end.joints_rad is not None
+        assert apart.narrowest(end.joints_rad).slack_m > 0.005
+    (text,) = [str(one) for one in zone_findings(scene)]
+    assert "main.tip and aux_2.tip at between here and there" in text
 
 
 def test_arms_that_share_no_zone_are_left_to_their_moves(monkeypatch: pytest.MonkeyPatch) -> None:
