@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.cell_scene import CellScene
-from cellctl.planning.views.looks import left_T_middle
+from cellctl.planning.views.looks import left_T_middle, middle_T_left
 from cellctl.planning.views.prediction import PredictedPose, ViewGeometry, predicted_pose
 from cellctl.planning.views.seeing import SeenHoles, why_unseen
 from cellctl.vision.camera.stereo_head import StereoHead
@@ -57,13 +57,12 @@ def _longer(placement: ViewGeometry) -> ViewGeometry:
 
 def with_baseline(head: StereoHead, ratio: float) -> tuple[StereoHead, RigidTransform]:
     """A head with another baseline, and ``middle_T_left`` of it; its covariance is not known."""
-    middle = left_T_middle(head)
     toe_in = 2.0 * np.arctan(ratio * np.tan(_toe_in_rad(head) / 2.0))
     more = Rotation.from_euler("y", (toe_in - _toe_in_rad(head)) / 2.0)
     places = []
     # The left camera is on the side of negative x and turns towards positive x, the right one back.
     for camera, turn in ((RigidTransform.identity(), more), (head.right_T_left.inv(), more.inv())):
-        in_middle = middle.inv() * camera
+        in_middle = middle_T_left(head) * camera
         places.append(
             RigidTransform.from_components(
                 in_middle.translation * [ratio, 1.0, 1.0], turn * in_middle.rotation

@@ -13,7 +13,7 @@ from cellctl.geometry.pose import Array
 from cellctl.planning.scene.cell_scene import CellScene, Standpoint
 from cellctl.planning.scene.head_limits import HeadLimits
 from cellctl.planning.scene.surroundings import Surroundings
-from cellctl.planning.views.looks import HeadLook, aim_at, left_T_middle, look_of
+from cellctl.planning.views.looks import HeadLook, aim_at, left_T_middle, look_of, middle_T_left
 from cellctl.planning.views.prediction import part_in_cell
 from cellctl.planning.views.seeing import SeenHoles, why_unseen
 from cellctl.planning.views.sight import Sights
@@ -90,7 +90,7 @@ class HeadSearch:
 
     def camera_at(self, look: HeadLook) -> RigidTransform:
         """``cell_T_camera`` of the left camera."""
-        return look.cell_T_middle(self.aim) * left_T_middle(self.head.camera).inv()
+        return look.cell_T_middle(self.aim) * middle_T_left(self.head.camera)
 
     def seeing(self, looks: Iterable[HeadLook]) -> Iterator[HeadLook]:
         """Those from which all holes are well in both images; nothing else is looked at."""

@@ -1,6 +1,6 @@
 """How uncertain the centre of a hole will be in both images of a head, before any is taken."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -8,7 +8,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.head_limits import ImageQuality
-from cellctl.vision.camera.lens import distort_jacobian, project
+from cellctl.vision.camera.lens import distort_jacobians, project
 from cellctl.vision.camera.stereo_head import CameraModel, StereoHead
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.average import remaining_variance
@@ -43,61 +43,73 @@ def camera_points(head: StereoHead, points_m: Array) -> tuple[Array, Array]:
     return points_m, points_m @ head.rotation.T + head.translation_m
 
 
+def right_camera_m(head: StereoHead) -> Array:
+    """Where the right camera is in the left one, shape (3,)."""
+    return np.asarray(-head.rotation.T @ head.translation_m)
+
+
 def pixels(head: StereoHead, points_m: Array) -> tuple[Array, Array]:
     """Raw pixels in both images, shape (n, 2) each, of points in the left camera."""
     left_m, right_m = camera_points(head, points_m)
     return project(head.left, left_m), project(head.right, right_m)
 
 
-def image_covariance(
-    head: StereoHead, camera_T_part: RigidTransform, hole: Hole, quality: ImageQuality, frames: int
+def pixels_by_point(head: StereoHead, points_m: Array) -> Array:
+    """Derivatives of both pixels, left and right, by points (n, 3) in the left camera, shape
+    (n, 4, 3)."""
+    left_m, right_m = camera_points(head, points_m)
+    left = _by_point(head.left, left_m)
+    right = _by_point(head.right, right_m) @ head.rotation
+    return np.concatenate([left, right], axis=1)
+
+
+def image_covariances(
+    head: StereoHead,
+    camera_T_part: RigidTransform,
+    holes: Sequence[Hole],
+    quality: ImageQuality,
+    frames: int,
 ) -> Array:
-    """Of the left and the right centre, in this order, in px², shape (4, 4).
+    """Of the left and the right centre of each hole, in this order, in px², shape (n, 4, 4).
 
     ``camera_T_part`` is for the left camera. The bound of each image is that of an even disc (docs/
     metrology.md): F = A² / (2 √π σe σn²) ∮ n nᵀ ds along the ellipse that the rim is in the image.
     """
-    errors = KINDS[hole.kind]
-    maps = _plane_to_images(head, camera_T_part, hole)
-    joint = np.zeros((4, 4))
-    for image, in_image in enumerate(maps):
-        place = slice(2 * image, 2 * image + 2)
-        joint[place, place] = errors.over_bound**2 * _bound_px2(
-            in_image, hole.diameter_m / 2, quality
-        )
-    both = np.vstack(maps)
+    places_m = camera_T_part.apply([hole.position_m for hole in holes])
+    # Pixels by metres along x and y of the part.
+    maps = pixels_by_point(head, places_m) @ camera_T_part.rotation.as_matrix()[:, :2]
+    left, right = maps[:, :2], maps[:, 2:]
+    kinds = [KINDS[hole.kind] for hole in holes]
+    over_bound = np.array([kind.over_bound for kind in kinds])[:, None, None]
+    radii_m = np.array([hole.diameter_m / 2 for hole in holes])
+    joint = np.zeros((len(holes), 4, 4))
+    joint[:, :2, :2] = over_bound**2 * _bounds_px2(left, radii_m, quality)
+    joint[:, 2:, 2:] = over_bound**2 * _bounds_px2(right, radii_m, quality)
     # One shift in the plane of the rim, whose length in pixels is that of the mean of both images.
-    scale = np.mean([np.sqrt(abs(np.linalg.det(one))) for one in maps])
-    joint += (errors.common_px / scale) ** 2 * both @ both.T
+    scales = np.sqrt(np.abs(np.linalg.det(np.stack([left, right])))).mean(axis=0)
+    shifts = np.array([kind.common_px for kind in kinds]) / scales
+    joint += (shifts**2)[:, None, None] * maps @ maps.swapaxes(1, 2)
     return np.asarray(joint * remaining_variance(frames))
 
 
-def _plane_to_images(
-    head: StereoHead, camera_T_part: RigidTransform, hole: Hole
-) -> tuple[Array, Array]:
-    """Pixels by metres along x and y of the part at a hole, shape (2, 2), left and right."""
-    centre_m = camera_T_part.apply(hole.position_m)
-    axes = camera_T_part.rotation.as_matrix()[:, :2]
-    left_m, right_m = camera_points(head, centre_m[None])
-    left = _by_point(head.left, left_m[0]) @ axes
-    right = _by_point(head.right, right_m[0]) @ head.rotation @ axes
-    return left, right
+def _by_point(camera: CameraModel, points_m: Array) -> Array:
+    """Derivatives of the raw pixels by points (n, 3) in the camera, shape (n, 2, 3)."""
+    rays = points_m[:, :2] / points_m[:, 2:]
+    by_point = np.zeros((len(points_m), 2, 3))
+    by_point[:, 0, 0] = by_point[:, 1, 1] = 1.0
+    by_point[:, :, 2] = -rays
+    by_point /= points_m[:, 2, None, None]
+    return np.asarray(distort_jacobians(camera, rays) @ by_point)
 
 
-def _by_point(camera: CameraModel, point_m: Array) -> Array:
-    """Derivative of the raw pixel by the point in the camera, shape (2, 3)."""
-    x, y, z = point_m
-    ray = np.array([[1.0 / z, 0.0, -x / z**2], [0.0, 1.0 / z, -y / z**2]])
-    return np.asarray(distort_jacobian(camera, point_m[:2] / z) @ ray)
-
-
-def _bound_px2(in_image: Array, radius_m: float, quality: ImageQuality) -> Array:
+def _bounds_px2(in_image: Array, radii_m: Array, quality: ImageQuality) -> Array:
+    """``in_image``: pixels by metres in the plane of each rim, shape (n, 2, 2)."""
     angles = 2.0 * np.pi * np.arange(_RIM_POINTS) / _RIM_POINTS
-    tangents = in_image @ (radius_m * np.array([-np.sin(angles), np.cos(angles)]))
-    lengths = np.linalg.norm(tangents, axis=0)
-    normals = np.array([tangents[1], -tangents[0]]) / lengths
-    ring = (normals * lengths) @ normals.T * (2.0 * np.pi / _RIM_POINTS)
+    tangents = in_image @ (radii_m[:, None, None] * np.array([-np.sin(angles), np.cos(angles)]))
+    lengths = np.linalg.norm(tangents, axis=1, keepdims=True)
+    normals = np.stack([tangents[:, 1], -tangents[:, 0]], axis=1) / lengths
+    rings = (normals * lengths) @ normals.swapaxes(1, 2) * (2.0 * np.pi / _RIM_POINTS)
     edge_px = np.sqrt(quality.blur_px**2 + _PIXEL_BOX_PX2)
     noise_grey2 = quality.noise_grey**2 + _ROUNDING_GREY2
-    known = quality.contrast_grey**2 / (2.0 * np.sqrt(np.pi) * edge_px * noise_grey2) * ring
+    known = quality.contrast_grey**2 / (2.0 * np.sqrt(np.pi) * edge_px * noise_grey2) * rings
     return np.asarray(np.linalg.inv(known))

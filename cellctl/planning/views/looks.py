@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -33,9 +34,13 @@ class HeadLook:
         """``cell_T_aim``: the middle of the holes, z into the parts."""
         turn = Rotation.from_rotvec([self.tilt_x_rad, self.tilt_y_rad, 0.0])
         turn = turn * Rotation.from_euler("z", self.roll_rad)
-        shift = RigidTransform.from_translation([self.shift_x_m, self.shift_y_m, 0.0])
-        back = RigidTransform.from_translation([0.0, 0.0, -self.distance_m])
-        return cell_T_aim * shift * RigidTransform.from_rotation(turn) * back
+        aim_T_middle = np.eye(4)
+        aim_T_middle[:3, :3] = turn.as_matrix()
+        aimed_m = np.array([self.shift_x_m, self.shift_y_m, 0.0])
+        aim_T_middle[:3, 3] = aimed_m - self.distance_m * aim_T_middle[:3, 2]
+        # A product of rotations is one; a chain of transforms would look at each step whether it
+        # is.
+        return RigidTransform(cell_T_aim.as_matrix() @ aim_T_middle, normalize=False)
 
     def neighbours(self, step: float) -> Iterator["HeadLook"]:
         """One number changed at a time; ``step`` 1 is that of the grid, about."""
@@ -84,6 +89,8 @@ def look_of(cell_T_middle: RigidTransform, cell_T_aim: RigidTransform) -> HeadLo
     )
 
 
+# A head does not change, and a search asks for it at each of thousands of places.
+@lru_cache(maxsize=64)
 def left_T_middle(head: StereoHead) -> RigidTransform:
     """Half way between both cameras: z along the middle of both lines of sight, x to the right."""
     right_T_left = head.right_T_left
@@ -94,6 +101,12 @@ def left_T_middle(head: StereoHead) -> RigidTransform:
     across /= np.linalg.norm(across)
     axes = np.column_stack([across, np.cross(forward, across), forward])
     return RigidTransform.from_components(right_m / 2, Rotation.from_matrix(axes))
+
+
+@lru_cache(maxsize=64)
+def middle_T_left(head: StereoHead) -> RigidTransform:
+    """The inverse of ``left_T_middle``."""
+    return left_T_middle(head).inv()
 
 
 def aim_at(places_m: Array, cell_T_part: RigidTransform) -> RigidTransform:

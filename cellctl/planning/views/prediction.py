@@ -12,15 +12,15 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.geometry.pose import Array, pose_error
-from cellctl.geometry.uncertain import UncertainPose, skew
 from cellctl.planning.scene.head_limits import ImageQuality
-from cellctl.planning.views.hole_image import image_covariance, pixels
+from cellctl.planning.views.hole_image import image_covariances, pixels, pixels_by_point
 from cellctl.vision.camera.perturbed_head import perturbed_heads
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import triangulate
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.measured_points import MeasuredPoints
-from cellctl.vision.registration.relative_pose import relative_pose
+from cellctl.vision.registration.relative_pose import relative_covariance, relative_pose
+from cellctl.vision.registration.rigid_fit import by_pose
 
 SOURCES = ("images", "holes off their drawing", "heads against each other", "sway")
 CALIBRATION = "calibration of the heads"
@@ -84,7 +84,7 @@ def predicted_pose(placement: ViewGeometry, *, explain: bool = False) -> Predict
     statement = placement.measurement
     first, last = (_points(placement, index) for index in (0, -1))
     between = statement.between_heads
-    covariance = _solved(placement, first, last, between, statement.sway_m).covariance
+    covariance = _covariance(placement, first, last, between, statement.sway_m)
     plain = PredictedPose(covariance, np.zeros((6, 6)), statement.thresholds)
     if not explain:
         return plain
@@ -99,21 +99,18 @@ def hole_points(
     head: StereoHead,
     camera_T_part: RigidTransform,
     holes: Sequence[Hole],
-    image_px2: Sequence[Array],
+    image_px2: Array,
 ) -> tuple[Array, Array]:
     """Holes triangulated from where they will be seen, (n, 3), with their covariances, (n, 3, 3).
 
-    ``image_px2``: of both images of each hole, shape (4, 4).
+    ``image_px2``: of both images of each hole, shape (n, 4, 4).
     """
-    left_px, right_px = pixels(head, camera_T_part.apply([hole.position_m for hole in holes]))
-    found = [
-        triangulate(head, left, right, covariance)
-        for left, right, covariance in zip(left_px, right_px, image_px2, strict=True)
-    ]
-    return (
-        np.array([one.position_m for one in found]).reshape(-1, 3),
-        np.array([one.covariance_m2 for one in found]).reshape(-1, 3, 3),
-    )
+    # Two exact pixels lead back to the point from which they come, so only the covariance of
+    # `triangulate` is left to compute: of all holes at once, because a search asks for thousands.
+    places_m = camera_T_part.apply([hole.position_m for hole in holes])
+    by_point = pixels_by_point(head, places_m)
+    normal = by_point.swapaxes(1, 2) @ np.linalg.inv(image_px2) @ by_point
+    return np.asarray(places_m), np.asarray(np.linalg.inv(normal))
 
 
 def _points(
@@ -128,45 +125,46 @@ def _points(
     variances. ``heads``: through which they are triangulated, else those that see them."""
     statement = placement.measurement
     part, cell_T_part = statement.parts[index], placement.cell_T_parts[index]
-    c1_T_c2 = placement.c1_T_c2
-    rows: list[tuple[Hole, Array, Array, Array]] = []
+    c1_T_cell = placement.cell_T_cameras[0].inv()
+    across = (c1_T_cell * cell_T_part).rotation.as_matrix()[:, :2]
+    # Of each head: places, covariances, derivatives by the error of c1_T_c2; all in C1.
+    rows: list[tuple[Array, Array, Array]] = []
+    seen: list[Hole] = []
     for number, stated in enumerate(statement.heads):
         holes = part.seen[stated.name]
         if not holes:
             continue
         camera_T_part = placement.cell_T_cameras[number].inv() * cell_T_part
         quality = placement.qualities[number]
-        image_px2 = [
+        image_px2 = (
             images
             * placement.image_variance
-            * image_covariance(stated.camera, camera_T_part, hole, quality, placement.frames)
-            for hole in holes
-        ]
+            * image_covariances(stated.camera, camera_T_part, holes, quality, placement.frames)
+        )
         places, spreads = hole_points(stated.camera, camera_T_part, holes, image_px2)
         if heads is not None:
             places = _seen_through(stated.camera, heads[number], places, image_px2)
-        for hole, place, spread in zip(holes, places, spreads, strict=True):
-            if number == 0:
-                rows.append((hole, place, spread, np.zeros((3, 6))))
-                continue
-            turn = c1_T_c2.rotation.as_matrix()
-            turned = turn @ place
-            by_transfer = np.hstack([np.eye(3), -skew(turned)])
-            rows.append((hole, turned + c1_T_c2.translation, turn @ spread @ turn.T, by_transfer))
-    across = (placement.cell_T_cameras[0].inv() * cell_T_part).rotation.as_matrix()[:, :2]
-    off = [drawing * hole.position_sigma_m**2 * across @ across.T for hole, *_ in rows]
+        seen += holes
+        if number == 0:
+            rows.append((places, spreads, np.zeros((len(holes), 3, 6))))
+            continue
+        c1_T_c2 = (c1_T_cell * placement.cell_T_cameras[number]).as_matrix()
+        turn, turned = c1_T_c2[:3, :3], places @ c1_T_c2[:3, :3].T
+        rows.append((turned + c1_T_c2[:3, 3], turn @ spreads @ turn.T, by_pose(turned)))
+    measured, covariances, by_transfer = (np.concatenate(one) for one in zip(*rows, strict=True))
+    squares = np.array([drawing * hole.position_sigma_m**2 for hole in seen])
     return MeasuredPoints(
-        tuple(hole.name for hole, *_ in rows),
-        np.array([hole.position_m for hole, *_ in rows]),
-        np.array([place for _, place, _, _ in rows]),
-        np.array([spread + one for (_, _, spread, _), one in zip(rows, off, strict=True)]),
-        np.array([by_transfer for *_, by_transfer in rows]),
+        tuple(hole.name for hole in seen),
+        np.array([hole.position_m for hole in seen]),
+        measured,
+        covariances + squares[:, None, None] * (across @ across.T),
+        by_transfer,
         placement.frames,
     )
 
 
 def _seen_through(
-    true: StereoHead, believed: StereoHead, places_m: Array, image_px2: Sequence[Array]
+    true: StereoHead, believed: StereoHead, places_m: Array, image_px2: Array
 ) -> Array:
     """Where holes are taken to be by a head that is calibrated wrongly, shape (n, 3)."""
     left_px, right_px = pixels(true, places_m)
@@ -178,17 +176,27 @@ def _seen_through(
     )
 
 
-def _solved(
+def _covariance(
     placement: ViewGeometry,
     first: MeasuredPoints,
     last: MeasuredPoints,
     between: Array,
     sway_m: float,
-) -> UncertainPose:
+) -> Array:
+    """With points that are where the parts have them."""
+    return relative_covariance(first, last, *_c1_T_parts(placement), between, sway_m=sway_m)
+
+
+def _solved(placement: ViewGeometry, first: MeasuredPoints, last: MeasuredPoints) -> RigidTransform:
+    """The pose that the measurement makes of points."""
+    between = placement.measurement.between_heads
+    found = relative_pose(first, last, *_c1_T_parts(placement), between)
+    return found.part_1_T_part_2.pose
+
+
+def _c1_T_parts(placement: ViewGeometry) -> tuple[RigidTransform, RigidTransform]:
     c1_T_cell = placement.cell_T_cameras[0].inv()
-    poses = [c1_T_cell * placement.cell_T_parts[index] for index in (0, -1)]
-    found = relative_pose(first, last, poses[0], poses[1], between, sway_m=sway_m)
-    return found.part_1_T_part_2
+    return c1_T_cell * placement.cell_T_parts[0], c1_T_cell * placement.cell_T_parts[-1]
 
 
 def _by_source(placement: ViewGeometry, covariance: Array) -> Mapping[str, Array]:
@@ -203,7 +211,7 @@ def _by_source(placement: ViewGeometry, covariance: Array) -> Mapping[str, Array
         first, last = (
             _points(placement, index, images=images, drawing=drawing) for index in (0, -1)
         )
-        return np.diag(_solved(placement, first, last, between * heads, 0.0).covariance)
+        return np.diag(_covariance(placement, first, last, between * heads, 0.0))
 
     still, more = variances(), 1.0 + _MORE
     parts = {
@@ -218,15 +226,14 @@ def _by_source(placement: ViewGeometry, covariance: Array) -> Mapping[str, Array
 def _by_calibration(placement: ViewGeometry, first: MeasuredPoints, last: MeasuredPoints) -> Array:
     """What the stated covariance of each head's calibration makes of the pose, shape (6, 6)."""
     statement = placement.measurement
-    exact = _solved(placement, first, last, statement.between_heads, 0.0).pose
+    exact = _solved(placement, first, last)
     added = np.zeros((6, 6))
     for number, stated in enumerate(statement.heads):
         for other in perturbed_heads(stated.camera):
             heads = [one.camera for one in statement.heads]
             heads[number] = other
             seen = [_points(placement, index, heads) for index in (0, -1)]
-            pose = _solved(placement, seen[0], seen[1], statement.between_heads, 0.0).pose
-            change = np.concatenate(pose_error(exact, pose))
+            change = np.concatenate(pose_error(exact, _solved(placement, seen[0], seen[1])))
             added += np.outer(change, change)
     return added
 

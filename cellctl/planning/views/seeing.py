@@ -1,14 +1,15 @@
 """Whether both cameras of a head see a hole well, apart from what stands between."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.head_limits import HeadLimits
-from cellctl.planning.views.hole_image import camera_points, pixels
-from cellctl.planning.views.looks import left_T_middle
+from cellctl.planning.views.hole_image import camera_points, pixels, right_camera_m
+from cellctl.planning.views.looks import middle_T_left
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.features.hole import Hole
 
@@ -22,19 +23,19 @@ _CHAMFER_SLOPE = 1.0
 states no countersink: 45°, as chamfers are cut."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class SeenHoles:
     """The holes of one part that one head is to see."""
 
     cell_T_part: RigidTransform
     holes: tuple[Hole, ...]
 
-    @property
+    @cached_property
     def places_m(self) -> Array:
         """Centres of the rims in the cell, shape (n, 3)."""
         return np.asarray(self.cell_T_part.apply([hole.position_m for hole in self.holes]))
 
-    @property
+    @cached_property
     def outward(self) -> Array:
         """Out of the face that is seen, in the cell, shape (3,)."""
         return np.asarray(self.cell_T_part.rotation.apply(outward_of(self.holes[0])))
@@ -54,9 +55,9 @@ def why_unseen(
     head: StereoHead, limits: HeadLimits, cell_T_left: RigidTransform, seen: SeenHoles
 ) -> str | None:
     """The first condition that is not met; None for holes that are all seen well."""
-    left_T_cell = cell_T_left.inv()
-    points_m = left_T_cell.apply(seen.places_m)
-    outward = left_T_cell.rotation.apply(seen.outward)
+    cell_T_camera = cell_T_left.as_matrix()
+    points_m = (seen.places_m - cell_T_camera[:3, 3]) @ cell_T_camera[:3, :3]
+    outward = seen.outward @ cell_T_camera[:3, :3]
     cameras = camera_points(head, points_m)
     depths_m = np.concatenate([one[:, 2] for one in cameras])
     if (depths_m < limits.nearest_m).any() or (depths_m > limits.farthest_m).any():
@@ -67,15 +68,14 @@ def why_unseen(
         radius_px = _radii_px(head, in_camera, seen.holes) + sizes_px
         if (seen_px < radius_px[:, None]).any() or (seen_px > size - radius_px[:, None]).any():
             return OUT_OF_PICTURE
-    right_m = head.right_T_left.inv().translation
+    right_m = right_camera_m(head)
     for centre_m in (np.zeros(3), right_m):
         slopes = _slopes(points_m - centre_m, outward)
         if (slopes > np.tan(limits.greatest_angle_rad)).any():
             return TOO_OBLIQUE
         if (slopes > [_open_slope(hole) for hole in seen.holes]).any():
             return HIDDEN_BY_BORE
-    lamp = left_T_middle(head)
-    from_lamp = lamp.inv().apply(points_m)
+    from_lamp = middle_T_left(head).apply(points_m)
     angles = np.arctan2(np.hypot(from_lamp[:, 0], from_lamp[:, 1]), from_lamp[:, 2])
     return UNLIT if (angles > limits.lit_within_rad).any() else None
 

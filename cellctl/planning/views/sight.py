@@ -10,6 +10,7 @@ from cellctl.geometry.pose import Array
 from cellctl.planning.model.shapes import CapsuleShape
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid
+from cellctl.planning.views.hole_image import right_camera_m
 from cellctl.planning.views.looks import left_T_middle
 from cellctl.planning.views.seeing import SeenHoles, sunk_m
 from cellctl.vision.camera.stereo_head import StereoHead
@@ -33,7 +34,7 @@ class Sights:
         self, head: StereoHead, cell_T_left: RigidTransform, seen: SeenHoles
     ) -> str | None:
         """The body that hides a hole from a camera, or keeps the light of the lamp from it."""
-        right_m = head.right_T_left.inv().translation
+        right_m = right_camera_m(head)
         ends_m = cell_T_left.apply([np.zeros(3), right_m, left_T_middle(head).translation])
         for hole, place_m in zip(seen.holes, seen.places_m, strict=True):
             # A rim below the face: the line of sight begins at the face.

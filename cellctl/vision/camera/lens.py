@@ -47,9 +47,16 @@ def undistort(camera: CameraModel, pixels: Array) -> Array:
 
 def distort_jacobian(camera: CameraModel, ray: Array) -> Array:
     """Derivative of ``distort`` at one ray, shape (2, 2), px."""
+    return np.asarray(distort_jacobians(camera, np.asarray(ray)[None])[0])
+
+
+def distort_jacobians(camera: CameraModel, rays: Array) -> Array:
+    """Derivatives of ``distort`` at rays of shape (n, 2), shape (n, 2, 2), px."""
     # At a focal length of some thousand pixels this is a few thousandths of a pixel: small against
     # the curvature of any lens, large against the rounding of the projection.
     step = 1e-6
     offsets = np.array([[step, 0.0], [-step, 0.0], [0.0, step], [0.0, -step]])
-    pixels = distort(camera, np.asarray(ray) + offsets)
-    return np.column_stack([pixels[0] - pixels[1], pixels[2] - pixels[3]]) / (2.0 * step)
+    around = (rays[:, None, :] + offsets).reshape(-1, 2)
+    pixels = distort(camera, around).reshape(-1, 4, 2)
+    differences = np.stack([pixels[:, 0] - pixels[:, 1], pixels[:, 2] - pixels[:, 3]], axis=-1)
+    return np.asarray(differences / (2.0 * step))

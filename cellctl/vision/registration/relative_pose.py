@@ -7,6 +7,7 @@ subtracting their poses leaves an error of the size of the movement. Here both p
 movement are estimated together: what is near each other in the view of one head is compared there.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -71,16 +72,42 @@ def relative_pose(
     # own, what is known of it beforehand, and cancel.
     freedom = 3 * (len(part_1.names) + len(part_2.names)) - 12
     misfit = ChiSquare(chi2, freedom)
+    covariance = _covariance((part_1, part_2), poses, normal, sway_m)
+    return RelativePose(UncertainPose(poses[0].inv() * poses[1], covariance), movement, misfit)
+
+
+def relative_covariance(
+    part_1: MeasuredPoints,
+    part_2: MeasuredPoints,
+    c1_T_part_1: RigidTransform,
+    c1_T_part_2: RigidTransform,
+    transfer_covariance: Array,
+    *,
+    sway_m: float = 0.0,
+) -> Array:
+    """That of ``relative_pose`` alone, (6, 6), for poses that already fit: nothing is estimated."""
+    parts, poses = (part_1, part_2), (c1_T_part_1, c1_T_part_2)
+    prior = np.asarray(np.linalg.inv(transfer_covariance), dtype=np.float64)
+    normal, _, _ = _equations(parts, poses, np.zeros(6), prior)
+    return _covariance(parts, poses, normal, sway_m)
+
+
+def _covariance(
+    parts: tuple[MeasuredPoints, MeasuredPoints],
+    poses: Sequence[RigidTransform],
+    normal: Array,
+    sway_m: float,
+) -> Array:
+    """Of the second part in the first one, shape (6, 6)."""
     jacobian = _by_poses(*poses)
     known = np.asarray(np.linalg.inv(normal), dtype=np.float64)
-    of_poses = known[:12, :12] + _by_sway((part_1, part_2), poses, known, sway_m)[:12, :12]
-    covariance = jacobian @ of_poses @ jacobian.T
-    return RelativePose(UncertainPose(poses[0].inv() * poses[1], covariance), movement, misfit)
+    of_poses = known[:12, :12] + _by_sway(parts, poses, known, sway_m)[:12, :12]
+    return np.asarray(jacobian @ of_poses @ jacobian.T)
 
 
 def _equations(
     parts: tuple[MeasuredPoints, MeasuredPoints],
-    poses: list[RigidTransform],
+    poses: Sequence[RigidTransform],
     movement: Array,
     prior: Array,
 ) -> tuple[Array, Array, float]:
@@ -106,7 +133,7 @@ def _equations(
 
 def _by_sway(
     parts: tuple[MeasuredPoints, MeasuredPoints],
-    poses: list[RigidTransform],
+    poses: Sequence[RigidTransform],
     known: Array,
     sway_m: float,
 ) -> Array:

@@ -6,7 +6,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.head_limits import ImageQuality
-from cellctl.planning.views.hole_image import KINDS, image_covariance
+from cellctl.planning.views.hole_image import KINDS, image_covariances
 from cellctl.vision.features.hole import Hole
 from tests.unit.planning.views.deck_views import measurement
 
@@ -22,7 +22,7 @@ def facing(distance_m: float, tilt_deg: float = 0.0) -> RigidTransform:
 
 
 def covariance(hole: Hole = DISC, *, distance_m: float = 0.5, frames: int = 1) -> Array:
-    return image_covariance(HEAD, facing(distance_m), hole, QUALITY, frames)
+    return np.asarray(image_covariances(HEAD, facing(distance_m), [hole], QUALITY, frames)[0])
 
 
 def test_a_disc_that_faces_the_camera_has_the_known_bound() -> None:

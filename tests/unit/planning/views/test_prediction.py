@@ -9,9 +9,15 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose, perturbed
-from cellctl.planning.views.hole_image import image_covariance, pixels
+from cellctl.planning.views.hole_image import image_covariances, pixels
 from cellctl.planning.views.plan_viewpoints import taught_placement
-from cellctl.planning.views.prediction import SOURCES, PredictedPose, ViewGeometry, predicted_pose
+from cellctl.planning.views.prediction import (
+    SOURCES,
+    PredictedPose,
+    ViewGeometry,
+    hole_points,
+    predicted_pose,
+)
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import triangulate
@@ -34,7 +40,9 @@ def drawn_part(
         camera_T_part = placement.cell_T_cameras[number].inv() * placement.cell_T_parts[index]
         quality, found = placement.qualities[number], []
         for hole in part.seen[stated.name]:
-            spread = image_covariance(stated.camera, camera_T_part, hole, quality, placement.frames)
+            (spread,) = image_covariances(
+                stated.camera, camera_T_part, [hole], quality, placement.frames
+            )
             off_m = rng.normal(0.0, hole.position_sigma_m, 3) * [1.0, 1.0, 0.0]
             true_m = camera_T_part.apply(hole.position_m + off_m)
             if number:
@@ -96,6 +104,20 @@ def test_drawn_measurements_scatter_as_predicted() -> None:
     # Of 150 draws a standard deviation is known to 6 %.
     assert (ratio > 0.8).all(), ratio
     assert (ratio < 1.25).all(), ratio
+
+
+def test_points_are_as_certain_as_their_triangulation_says() -> None:
+    """All holes at once, without triangulating: the search asks for thousands of them."""
+    for index, part in enumerate(PLACEMENT.measurement.parts):
+        for number, stated in enumerate(PLACEMENT.measurement.heads):
+            head, holes = stated.camera, part.seen[stated.name]
+            camera_T_part = PLACEMENT.cell_T_cameras[number].inv() * PLACEMENT.cell_T_parts[index]
+            spreads = image_covariances(head, camera_T_part, holes, PLACEMENT.qualities[number], 2)
+            places, covariances = hole_points(head, camera_T_part, holes, spreads)
+            for row, seen_px in enumerate(zip(*pixels(head, places), strict=True)):
+                point = triangulate(head, *seen_px, spreads[row])
+                assert point.position_m == pytest.approx(places[row], abs=1e-9)
+                assert covariances[row] == pytest.approx(point.covariance_m2, rel=1e-6)
 
 
 @cache
