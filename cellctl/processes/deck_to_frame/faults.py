@@ -5,6 +5,7 @@ VisionError
 ├── NoProgress, CorrectionDiverging, CorrectionImplausible,
 │   CorrectionLimitReached                                     441–444  pose correction
 └── PartMisplaced, SeatedOffPosition                           451 452  where a part is
+DeckInGripper                                                  530      before a procedure
 MatingFault
 └── ContactEarly, ContactLate, DeckNotSeated, LateralLoad,
     CreepNotConverged, MatingOverforce                         522–527  contact
@@ -82,6 +83,19 @@ class SeatedOffPosition(VisionError):
     remedy = (
         "Check the pin holes with plug gauges and the joint with feeler gauges; do not fasten "
         "before the cause is known."
+    )
+    reaction = Reaction.STOP
+
+
+class DeckInGripper(ForceError):
+    """The sensor carries the deck in a procedure that swings through its space."""
+
+    number = 530
+    text = "The deck is still in the gripper"
+    cause = "It was not taken out before a procedure whose moves need its space."
+    remedy = (
+        "Take it out by hand. If the gripper is empty, the deck weighs too little to be told from "
+        "an empty one: invalidate the payload (`cellctl invalidate`) and identify it again after."
     )
     reaction = Reaction.STOP
 

@@ -36,6 +36,7 @@ from cellctl.processes.deck_to_frame.procedures.clear_cell import clear_the_cell
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness import (
     measure_contact_stiffness_on_cell,
 )
+from cellctl.processes.deck_to_frame.procedures.empty_gripper import require_no_deck
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2
 from cellctl.processes.deck_to_frame.stations import DeckCell
 from cellctl.runtime.guide import Guide
@@ -109,7 +110,7 @@ class _OnCell:
         settings = self._cell.settings
         columns, rows = (int(number) for number in settings.board.split("x"))
         board = CalibrationBoard(columns, rows, settings.square_mm * MM)
-        await clear_the_cell(self._cell, context.board, measuring=station)
+        await self._without_deck(context, measuring=station)
         return await calibrate_head(
             context,
             station,
@@ -133,7 +134,7 @@ class _OnCell:
         assert d1_mm is not None  # by the check of the cell file
         assert a1_mm is not None  # likewise
         arm = ArmGeometry(d1_m=d1_mm * MM, a1_m=a1_mm * MM)
-        await clear_the_cell(cell, context.board)
+        await self._without_deck(context)
         async with guarded_section(cell.arm, free_tolerance(cell.arm)):
             return await calibrate_base(
                 context,
@@ -150,7 +151,7 @@ class _OnCell:
         """109: where 103 ended, so that the way there and home is that of 103."""
         cell = self._cell
         reference = self._services.calibrations.read(BASE_FRAME).reference
-        await clear_the_cell(cell, context.board)
+        await self._without_deck(context)
         async with guarded_section(cell.arm, free_tolerance(cell.arm)):
             await check_arm_reference(
                 context,
@@ -162,6 +163,13 @@ class _OnCell:
                 target_prefix=FLANGE_TARGETS,
                 go_home=partial(main_to_home, cell),
             )
+
+    async def _without_deck(
+        self, context: ProcedureContext, *, measuring: StereoStation | None = None
+    ) -> None:
+        """The cell is cleared as for a run, deck or not; what comes then needs its space."""
+        await clear_the_cell(self._cell, context.board, measuring=measuring)
+        await require_no_deck(self._cell, self._services)
 
     async def board(self, head: str, context: ProcedureContext) -> ProcedureOutcome | None:
         """Procedures 104 and 105: the boards of both heads."""
