@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from cellctl.geometry.pose import Array
-from cellctl.procedures import payload as weighing
 from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 from cellctl.processes.deck_to_frame.faults import DeckInGripper
 from cellctl.processes.deck_to_frame.procedures.clear_cell import clear_the_cell
@@ -17,9 +16,7 @@ from tests.unit.procedures.rig import ProcedureRig
 
 
 @pytest.fixture
-def rig(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ProcedureRig]:
-    monkeypatch.setattr(weighing, "SETTLE_S", 0.0)
-    monkeypatch.setattr(weighing, "AVERAGE_S", 0.01)
+def rig(tmp_path: Path) -> Iterator[ProcedureRig]:
     rig = ProcedureRig(make_bench(tmp_path), tmp_path / "store")
     yield rig
     rig.archive.close()
