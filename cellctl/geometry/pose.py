@@ -44,7 +44,8 @@ def pose_to_xyzabc(pose: RigidTransform) -> Array:
     # pole, the three together are then the rotation.
     c = math.atan2(sin * xz - cos * yz, cos * yy - sin * xy)
     turn = (math.degrees(angle) for angle in (a, math.atan2(-zx, level), c))
-    return np.array([x_m / MM, y_m / MM, z_m / MM, *turn])
+    # A zero without a sign: a file with -0.0 would differ from one with 0.0 for no reason.
+    return np.array([x_m / MM, y_m / MM, z_m / MM, *turn]) + 0.0
 
 
 def pose_error(expected: RigidTransform, measured: RigidTransform) -> tuple[Array, Array]:

@@ -22,6 +22,11 @@ def test_written_form_round_trips(
     assert pose_to_xyzabc(pose_from_xyzabc(written)) == pytest.approx(written, abs=1e-6)
 
 
+def test_a_zero_is_written_without_a_sign() -> None:
+    for pose in (pose_from_xyzabc([-0.0] * 6), pose_from_xyzabc([0.0] * 6).inv()):
+        assert not np.signbit(pose_to_xyzabc(pose)).any()
+
+
 @given(mm, mm, mm, angle, angle, angle)
 def test_written_form_is_that_of_scipy(
     x: float, y: float, z: float, a: float, b: float, c: float
