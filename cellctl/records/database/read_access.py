@@ -25,10 +25,10 @@ class ReadAccess:
     def connect(self, timeout_s: float, *, one_thread: bool = True) -> sqlite3.Connection:
         """A connection; raises ``sqlite3.Error``."""
         if self.writes:
-            return sqlite3.connect(self._file, timeout_s, check_same_thread=one_thread)
+            return sqlite3.connect(self._file, timeout=timeout_s, check_same_thread=one_thread)
         wanted = "mode=ro&immutable=1" if self._unchanging else "mode=ro"
         address = f"file:{quote(str(self._file.absolute()))}?{wanted}"
-        return sqlite3.connect(address, timeout_s, check_same_thread=one_thread, uri=True)
+        return sqlite3.connect(address, timeout=timeout_s, check_same_thread=one_thread, uri=True)
 
     def check(self) -> None:
         """What was read is good; raises ``StoreUnavailable`` where a daemon may have written.
