@@ -22,12 +22,17 @@ class LimitCheck:
     side: Side = "max"
 
     @property
+    def bounds(self) -> tuple[float | None, float | None]:
+        """Least and most that the value may be; None for no bound on that side."""
+        least = {"max": None, "min": self.limit, "both": -self.limit}[self.side]
+        return least, None if self.side == "min" else self.limit
+
+    @property
     def passed(self) -> bool:
         """False also for a value that is not a number."""
-        # Written as the comparison that must hold: with NaN every comparison is false.
-        if self.side == "min":
-            return bool(self.value >= self.limit)
-        return bool((abs(self.value) if self.side == "both" else self.value) <= self.limit)
+        least, most = self.bounds
+        # Written as the comparisons that must hold: with NaN every comparison is false.
+        return bool((least is None or self.value >= least) and (most is None or self.value <= most))
 
     def __str__(self) -> str:
         relation = RELATIONS[self.side]

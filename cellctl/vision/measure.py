@@ -17,17 +17,14 @@ from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import epipolar_distances_px, triangulate
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.known_kinds import kind_of
+from cellctl.vision.holes.arrangements import arrangements
 from cellctl.vision.holes.correspondence import (
-    COARSE_TOLERANCE_M,
     Assignment,
     Expectation,
-    StereoCandidate,
-    assignments,
 )
-from cellctl.vision.holes.diagnose import fault_without_layout
 from cellctl.vision.holes.drawing_fit import check_layout, only_one
 from cellctl.vision.holes.locate import LOCATE_REACH_PX, locate_holes, rim_rois
-from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, WholeImageSearch, search_windows
+from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper_baseline import measure_pair_by_paper
 from cellctl.vision.rim.image_scale import with_image_scales
@@ -82,7 +79,7 @@ def measure_pair(
     good: list[PairMeasurement] = []
     faults: list[VisionError] = []
     tried: list[Array] = []
-    for assignment in _find(images, holes, expectation):
+    for assignment in arrangements(images, holes, expectation):
         if _done_already(assignment.places_px, good, tried):
             continue
         tried.append(assignment.places_px)
@@ -95,29 +92,6 @@ def measure_pair(
     if not good:
         raise faults[0]
     return only_one(holes, good)
-
-
-def _find(
-    images: HeadImages, holes: Sequence[Hole], expectation: Expectation | None
-) -> list[Assignment]:
-    """Assignments of features to holes, best first; a fault when there is none."""
-    search = WholeImageSearch(images, holes)
-    candidates: list[StereoCandidate] = []
-    # The narrow range first: it costs less, and fewer chance features compete for the drawing.
-    for reach in (NEAR, WIDE):
-        if expectation is None:
-            candidates = search.features(reach).pairs()
-        else:
-            candidates = search_windows(images, holes, expectation)
-        found = assignments(
-            holes, candidates, tolerance_m=COARSE_TOLERANCE_M, expectation=expectation
-        )
-        if found:
-            return found
-        # Windows do not depend on the range of distance, so a second search would find the same.
-        if expectation is not None:
-            break
-    raise fault_without_layout(search, candidates, expectation)
 
 
 def _done_already(

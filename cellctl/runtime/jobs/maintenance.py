@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 
 from cellctl import log
-from cellctl.calibration.checks import Checks, LimitCheck, checks_from_record
+from cellctl.calibration.checks import Checks, checks_from_record
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
 from cellctl.errors.records import RecordsError
@@ -154,15 +154,8 @@ class MaintenanceJob(Job):
 def _figures(outcome: ProcedureOutcome) -> Iterator[Figure]:
     """Its checks, as any run has its figures."""
     for check in _checks(outcome):
-        lower, upper = _bounds(check)
         key = f"{outcome.kind.name}.{_NO_KEY.sub('_', check.name.lower()).strip('_')}"
-        yield figure(key, check.value, check.unit, label=check.name, limit=Limit(lower, upper))
-
-
-def _bounds(check: LimitCheck) -> tuple[float | None, float | None]:
-    if check.side == "both":
-        return -check.limit, check.limit
-    return (check.limit, None) if check.side == "min" else (None, check.limit)
+        yield figure(key, check.value, check.unit, label=check.name, limit=Limit(*check.bounds))
 
 
 def _checks(outcome: ProcedureOutcome) -> Checks:

@@ -14,8 +14,6 @@ from cellctl.vision.features.known_kinds import kind_of
 from cellctl.vision.holes.candidates import Candidate
 from cellctl.vision.registration.rigid_fit import kabsch, misfits_m, on_a_line
 
-COARSE_TOLERANCE_M = 2.5e-3
-"""Largest deviation of features as they are first found, to one or two pixels."""
 _MAX_ASSIGNMENTS = 64
 """Most assignments that are looked at: where there are more, the drawing does not tell the features
 apart."""

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.holes.correspondence import COARSE_TOLERANCE_M, Assignment, assignments
-from cellctl.vision.holes.diagnose import fault_without_layout
-from cellctl.vision.holes.search import NEAR, WIDE, HeadImages, WholeImageSearch
+from cellctl.vision.holes.arrangements import arrangements
+from cellctl.vision.holes.correspondence import Assignment
+from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.registration.rigid_fit import kabsch
 
 
@@ -21,15 +21,9 @@ def pose_turned_like(
     not count: for a part with half-turn symmetry a pose that is right to 90 degrees. Raises
     ``HoleMissing``, ``CamerasSwapped`` or ``CameraUpsideDown``.
     """
-    search = WholeImageSearch(images, holes)
-    for reach in (NEAR, WIDE):
-        candidates = search.features(reach).pairs()
-        found = assignments(holes, candidates, tolerance_m=COARSE_TOLERANCE_M, expectation=None)
-        if found:
-            back = camera_T_part.rotation.inv()
-            poses = [_pose(holes, one) for one in found]
-            return min(poses, key=lambda pose: (back * pose.rotation).magnitude())
-    raise fault_without_layout(search, candidates, None)
+    back = camera_T_part.rotation.inv()
+    poses = [_pose(holes, one) for one in arrangements(images, holes, None)]
+    return min(poses, key=lambda pose: (back * pose.rotation).magnitude())
 
 
 def _pose(holes: Sequence[Hole], found: Assignment) -> RigidTransform:

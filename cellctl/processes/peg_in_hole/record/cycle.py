@@ -65,7 +65,7 @@ async def record_cycle(run: PegRun, result: CycleResult) -> None:
 
 
 def _figure(check: LimitCheck, evidence: InsertionEvidence) -> Figure:
-    limit = Limit(upper=check.limit) if check.side == "max" else Limit(lower=check.limit)
+    limit = Limit(*check.bounds)
     value = check.value if isfinite(check.value) else None
     return figure(
         keys.check(check.name), value, check.unit, label=_label(check, evidence), limit=limit
