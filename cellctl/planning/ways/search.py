@@ -1,6 +1,4 @@
-"""Searches a free way between two places: random trees, then as few points as will do."""
-
-from itertools import pairwise
+"""Searches a free way between two places: random trees, then short, plain and quick."""
 
 import numpy as np
 from ompl import base, geometric, util
@@ -8,15 +6,14 @@ from ompl import base, geometric, util
 from cellctl.errors.config import NoFreeWay
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.surroundings import Surroundings
-from cellctl.planning.ways.sweep import sweep
+from cellctl.planning.ways.free import RESERVE_M, is_free_way
+from cellctl.planning.ways.quicken import quickened
+from cellctl.planning.ways.simplify import plain, rounded, shortened
 from cellctl.planning.ways.travel import travel_s
 
-RESERVE_M = 0.005
-"""What the search keeps beyond the margins, so that points may be rounded and cut short."""
 _STEP_SHARE = 0.01
 """Distance between two looks of the search, as a share of the whole space of joints; the result is
 then swept without a gap."""
-_SHORTCUTS = 40
 
 
 def free_way(
@@ -42,35 +39,18 @@ def free_way(
         # From 1 on: OMPL does not accept 0 for a seed.
         rough = _tree(around, start_rad, end_rad, seed * tries + number + 1, search_s / tries)
         if rough is not None:
-            rng = np.random.default_rng([seed, number])
-            way = _rounded(around, _plain(around, _shortened(around, rough, rng)))
+            short = shortened(around, rough, np.random.default_rng([seed, number]))
             # The tree looks at places: a line of it that nothing has replaced was not swept yet.
-            if is_free_way(around, way):
-                found.append(way)
+            if is_free_way(around, short):
+                found.append(short)
     if not found:
         raise NoFreeWay(
             f"none within {search_s:g} s; the nearest at its start: {around.narrowest(start_rad)}; "
             f"at its end: {around.narrowest(end_rad)}"
         )
-    return min(found, key=lambda way: travel_s(around.arm, way))
-
-
-def is_free_way(around: Surroundings, way_rad: Array, extra_m: float = 0.0) -> bool:
-    """Whether the arm may go straight through joints of shape (n, 6), swept without a gap."""
-    return sweep(around, way_rad, extra_m).gap.slack_m >= extra_m and all(
-        around.refusal(at_rad) is None for at_rad in _looks(way_rad)
-    )
-
-
-def _looks(way_rad: Array) -> Array:
-    # Whether driver and zones allow a place is yes or no, without a distance that one could advance
-    # by; so it is asked at every degree, as drivers ask it for the way of a joint move.
-    step_rad = np.radians(1.0)
-    lines = [
-        np.linspace(start, end, 2 + int(np.abs(end - start).max() / step_rad))
-        for start, end in pairwise(way_rad)
-    ]
-    return np.vstack(lines)
+    quickest = min(found, key=lambda way: travel_s(around.arm, way))
+    quick = quickened(around, plain(around, quickest), np.random.default_rng([seed, tries]))
+    return rounded(around, plain(around, quick))
 
 
 def _tree(
@@ -112,68 +92,3 @@ def _state(space: base.RealVectorStateSpace, joints_rad: Array) -> object:
     for joint, value in enumerate(joints_rad):
         state[joint] = float(value)
     return state
-
-
-def _shortened(around: Surroundings, rough_rad: Array, rng: np.random.Generator) -> Array:
-    """Cuts corners between random places of the way, and leaves out points that are not needed."""
-    way_rad = _pruned(around, rough_rad)
-    for _ in range(_SHORTCUTS):
-        if len(way_rad) == 2:
-            break
-        cut = _cut(way_rad, rng)
-        if travel_s(around.arm, cut) < travel_s(around.arm, way_rad) and _lines_free(around, cut):
-            way_rad = cut
-    return _pruned(around, way_rad)
-
-
-def _cut(way_rad: Array, rng: np.random.Generator) -> Array:
-    """The way with a straight line between two random places of it."""
-    first, last = np.sort(rng.uniform(0.0, len(way_rad) - 1.0, 2))
-    index, beyond = int(first), int(last) + 1
-    return np.vstack(
-        [way_rad[: index + 1], _between(way_rad, first), _between(way_rad, last), way_rad[beyond:]]
-    )
-
-
-def _between(way_rad: Array, place: float) -> Array:
-    index = min(int(place), len(way_rad) - 2)
-    share = place - index
-    return np.asarray((1.0 - share) * way_rad[index] + share * way_rad[index + 1])
-
-
-def _lines_free(around: Surroundings, way_rad: Array) -> bool:
-    # Less than the tree has kept, or its own lines would not pass; more than nothing, so that
-    # points may still be rounded.
-    return is_free_way(around, way_rad, RESERVE_M / 2)
-
-
-def _pruned(around: Surroundings, way_rad: Array) -> Array:
-    """From each point straight to the farthest that is free from there."""
-    kept, here = [way_rad[0]], 0
-    while here < len(way_rad) - 1:
-        ahead = len(way_rad) - 1
-        while ahead > here + 1:
-            if _lines_free(around, np.vstack([way_rad[here], way_rad[ahead]])):
-                break
-            ahead -= 1
-        kept.append(way_rad[ahead])
-        here = ahead
-    return np.array(kept)
-
-
-def _plain(around: Surroundings, way_rad: Array) -> Array:
-    """Joints that need not leave their straight course do not: a person can follow such a way."""
-    shares = np.linspace(0.0, 1.0, len(way_rad))
-    for joint in (3, 5, 0, 4, 1, 2):
-        plain = way_rad.copy()
-        plain[:, joint] = (1.0 - shares) * way_rad[0, joint] + shares * way_rad[-1, joint]
-        if _lines_free(around, plain):
-            way_rad = plain
-    return _pruned(around, way_rad)
-
-
-def _rounded(around: Surroundings, way_rad: Array) -> Array:
-    """Points at tenths of a degree, as the file has them, where that leaves the way free."""
-    rounded = way_rad.copy()
-    rounded[1:-1] = np.radians(np.round(np.degrees(way_rad[1:-1]), 1))
-    return rounded if is_free_way(around, rounded) else way_rad
