@@ -13,9 +13,10 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.config.stated.views import StatedMeasurement, StatedPart
 from cellctl.geometry.pose import Array, pose_error
 from cellctl.planning.scene.head_limits import ImageQuality
-from cellctl.planning.views.hole_image import image_covariances, pixels, pixels_by_point
+from cellctl.planning.views.hole_image import image_covariances
 from cellctl.vision.camera.perturbed_head import perturbed_heads
 from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_projection import pixels, pixels_by_point
 from cellctl.vision.camera.triangulation import triangulate
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.registration.measured_points import MeasuredPoints

@@ -8,9 +8,9 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.head_limits import HeadLimits
-from cellctl.planning.views.hole_image import camera_points, pixels, right_camera_m
 from cellctl.planning.views.looks import middle_T_left
 from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_projection import camera_points, pixels, right_camera_m
 from cellctl.vision.features.hole import Hole
 
 OUT_OF_FOCUS = "a hole is out of focus"

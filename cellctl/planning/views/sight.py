@@ -10,10 +10,10 @@ from cellctl.geometry.pose import Array
 from cellctl.planning.model.shapes import CapsuleShape
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid
-from cellctl.planning.views.hole_image import right_camera_m
 from cellctl.planning.views.looks import left_T_middle
 from cellctl.planning.views.seeing import SeenHoles, sunk_m
 from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_projection import right_camera_m
 
 _ABOVE_FACE_M = 0.002
 """Where a line of sight begins, beside the radius of its rim: the part itself is no obstacle."""

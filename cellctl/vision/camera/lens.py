@@ -45,11 +45,6 @@ def undistort(camera: CameraModel, pixels: Array) -> Array:
     return np.asarray(rays, dtype=float).reshape(-1, 2)
 
 
-def distort_jacobian(camera: CameraModel, ray: Array) -> Array:
-    """Derivative of ``distort`` at one ray, shape (2, 2), px."""
-    return np.asarray(distort_jacobians(camera, np.asarray(ray)[None])[0])
-
-
 def distort_jacobians(camera: CameraModel, rays: Array) -> Array:
     """Derivatives of ``distort`` at rays of shape (n, 2), shape (n, 2, 2), px."""
     # At a focal length of some thousand pixels this is a few thousandths of a pixel: small against

@@ -6,8 +6,9 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skew
-from cellctl.vision.camera.lens import distort_jacobian, project, undistort
+from cellctl.vision.camera.lens import undistort
 from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_projection import pixels, pixels_by_point, right_camera_m
 
 _STEPS = 2
 """Gauss-Newton steps. Started half-way between the rays, the first one leaves less than 1e-6 px."""
@@ -45,7 +46,7 @@ def midpoints(head: StereoHead, left_px: Array, right_px: Array) -> Array:
     """Points half-way between the two rays of each pair, shape (n, 3), left camera, m."""
     left = np.column_stack([undistort(head.left, left_px), np.ones(len(left_px))])
     right = np.column_stack([undistort(head.right, right_px), np.ones(len(right_px))])
-    origin = -head.rotation.T @ head.translation_m
+    origin = right_camera_m(head)
     right = right @ head.rotation
     ll, rr, lr = (left**2).sum(1), (right**2).sum(1), (left * right).sum(1)
     lo, ro = left @ origin, right @ origin
@@ -63,8 +64,10 @@ def triangulate(
     # The joint covariance, not two separate ones: where both images of a rim were fitted together,
     # their errors hang together, and what they share changes the depth less than its size suggests.
     weight = np.linalg.inv(covariance_px2)
+    seen_px = np.concatenate([left_px, right_px])
     for _ in range(_STEPS):
-        residual, jacobian = _reprojection(head, point, left_px, right_px)
+        residual = seen_px - np.hstack(pixels(head, point[None]))[0]
+        jacobian = pixels_by_point(head, point[None])[0]
         normal = jacobian.T @ weight @ jacobian
         step = np.linalg.solve(normal, jacobian.T @ weight @ residual)
         point = point + step
@@ -82,26 +85,3 @@ def joint_covariance(left_px2: Array, right_px2: Array) -> Array:
     joint = np.zeros((4, 4))
     joint[:2, :2], joint[2:, 2:] = left_px2, right_px2
     return joint
-
-
-def _reprojection(
-    head: StereoHead, point: Array, left_px: Array, right_px: Array
-) -> tuple[Array, Array]:
-    in_right = head.rotation @ point + head.translation_m
-    seen = np.concatenate(
-        [project(head.left, point[None])[0], project(head.right, in_right[None])[0]]
-    )
-    jacobian = np.vstack(
-        [
-            distort_jacobian(head.left, point[:2] / point[2]) @ _perspective(point),
-            distort_jacobian(head.right, in_right[:2] / in_right[2])
-            @ _perspective(in_right)
-            @ head.rotation,
-        ]
-    )
-    return np.concatenate([left_px, right_px]) - seen, jacobian
-
-
-def _perspective(point: Array) -> Array:
-    x, y, z = point
-    return np.array([[1.0 / z, 0.0, -x / z**2], [0.0, 1.0 / z, -y / z**2]])

@@ -9,7 +9,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.geometry.pose import Array, pose_error
 from cellctl.geometry.uncertain import UncertainPose, perturbed
-from cellctl.planning.views.hole_image import image_covariances, pixels
+from cellctl.planning.views.hole_image import image_covariances
 from cellctl.planning.views.plan_viewpoints import taught_placement
 from cellctl.planning.views.prediction import (
     SOURCES,
@@ -20,6 +20,7 @@ from cellctl.planning.views.prediction import (
 )
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.vision.camera.stereo_projection import pixels
 from cellctl.vision.camera.triangulation import triangulate
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from cellctl.vision.camera.lens import distort, distort_jacobian, project, undistort
+from cellctl.vision.camera.lens import distort, distort_jacobians, project, undistort
 from tests.rigs.calibration import wide_lens
 from tests.unit.vision.plates import table_1_head
 
@@ -25,7 +25,7 @@ def test_jacobian_of_the_distortion() -> None:
     ray = np.array([0.12, -0.2])
     step = np.array([3e-5, -2e-5])
     change = distort(HEAD.right, (ray + step)[None])[0] - distort(HEAD.right, ray[None])[0]
-    assert np.allclose(distort_jacobian(HEAD.right, ray) @ step, change, atol=1e-5)
+    assert np.allclose(distort_jacobians(HEAD.right, ray[None])[0] @ step, change, atol=1e-5)
 
 
 @pytest.mark.parametrize(
