@@ -3,6 +3,7 @@
 Each planned way is looked at again by an independent library, at the latest every 1 mm that any
 body may have moved beyond the room that it had. Goes on where an earlier run ended.
 Usage: python -m benchmarks.planning.campaign -n 100
+With --views the heads are planned too, in place of taught for the displaced frame.
 """
 
 import json
@@ -18,6 +19,7 @@ import numpy as np
 import typer
 
 from benchmarks.planning.cells import random_cell
+from benchmarks.planning.views_in_cells import with_planned_views
 from cellctl.errors.config import PlanningError
 from cellctl.geometry.pose import MM
 from cellctl.planning.scene.cell_scene import CellScene
@@ -38,25 +40,34 @@ class Outcome:
     points: int
     least_slack_mm: float
     """Smallest slack that MuJoCo found on all ways; infinite for a cell that was refused."""
+    worst_share: float = np.nan
+    """Of its threshold, for the least certain component, where viewpoints were planned."""
 
 
-def try_cell(seed: int, look_m: float = _LOOK_M, search_s: float = 20.0) -> Outcome:
-    """Plan all ways of one random cell and verify them."""
+def try_cell(
+    seed: int, look_m: float = _LOOK_M, search_s: float = 20.0, *, views: bool = False
+) -> Outcome:
+    """Plan all ways of one random cell, and with ``views`` its viewpoints first; verify them."""
     begin_s = time.monotonic()
     ways: list[PlannedWay] = []
     slacks: list[float] = []
-    reason, seconds = "planned", 0.0
+    reason, seconds, worst_share = "planned", 0.0, np.nan
     try:
-        scene = random_cell(seed).scene()
+        if views:
+            viewed = with_planned_views(random_cell(seed))
+            scene, worst_share = viewed.scene, viewed.worst_share
+            slacks.append(viewed.least_slack_mm * MM)
+        else:
+            scene = random_cell(seed).scene()
         ways.extend(plan_ways(scene, seed=seed, search_s=search_s))
         seconds = time.monotonic() - begin_s
-        slacks = [_least_slack_m(scene, way, look_m) for way in ways]
+        slacks += [_least_slack_m(scene, way, look_m) for way in ways]
     except PlanningError as fault:
         reason = f"F{fault.number} {fault.text}"
         print(f"cell {seed}: {fault}", flush=True)
         seconds = time.monotonic() - begin_s
     points = sum(len(way.joints_rad) - 2 for way in ways)
-    return Outcome(seed, reason, seconds, points, min(slacks, default=np.inf) / MM)
+    return Outcome(seed, reason, seconds, points, min(slacks, default=np.inf) / MM, worst_share)
 
 
 def _least_slack_m(scene: CellScene, way: PlannedWay, look_m: float) -> float:
@@ -102,15 +113,18 @@ def main(
     n: Annotated[int, typer.Option("-n", min=1, help="Number of drawn cells.")] = 100,
     first: Annotated[int, typer.Option(help="First seed.")] = 1,
     look_mm: Annotated[float, typer.Option(min=0.1, help="Between two looks.")] = _LOOK_M / MM,
-    out: Annotated[Path, typer.Option(help="One line for each cell.")] = Path("runs/ways.jsonl"),
+    out: Annotated[Path | None, typer.Option(help="One line for each cell.")] = None,
+    *,
+    views: Annotated[bool, typer.Option("--views", help="Plan the viewpoints too.")] = False,
 ) -> None:
     """Print a table of the outcomes; exit code 1 where a planned way has less than its margins."""
+    out = out or Path("runs/views-and-ways.jsonl" if views else "runs/ways.jsonl")
     out.parent.mkdir(parents=True, exist_ok=True)
     text = out.read_text(encoding="utf-8") if out.exists() else ""
     done = {found.seed: found for found in map(_read, text.splitlines())}
     for seed in range(first, first + n):
         if seed not in done:
-            done[seed] = try_cell(seed, look_mm * MM)
+            done[seed] = try_cell(seed, look_mm * MM, views=views)
             with out.open("a", encoding="utf-8") as file:
                 print(json.dumps(asdict(done[seed])), file=file)
     outcomes = [done[seed] for seed in range(first, first + n)]
@@ -128,6 +142,12 @@ def _print(outcomes: Sequence[Outcome], look_mm: float) -> None:
     seconds = [one.seconds for one in outcomes]
     print(f"time of a plan: median {np.median(seconds):.1f} s, longest {max(seconds):.1f} s")
     planned = [one for one in outcomes if one.reason == "planned"]
+    shares = [one.worst_share for one in planned if np.isfinite(one.worst_share)]
+    if shares:
+        print(
+            f"least certain component, of its threshold: median {np.median(shares):.2f}, "
+            f"greatest {max(shares):.2f}"
+        )
     if planned:
         worst = min(planned, key=lambda one: one.least_slack_mm)
         print(

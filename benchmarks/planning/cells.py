@@ -1,8 +1,9 @@
 """Random cells: the shipped one with displaced frame and heads, a deck size and obstacles."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -10,13 +11,14 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.config import load_cell
 from cellctl.config.model_file import model_path
 from cellctl.config.stated.moves import StatedPlace
-from cellctl.geometry.pose import Array
+from cellctl.geometry.pose import MM, Array
 from cellctl.planning.model.read import read_model
 from cellctl.planning.model.shapes import BoxShape
 from cellctl.planning.scene.arm import PlannedArm
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid
 from cellctl.planning.ways.polyline import joints_at
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
 CELL_FILE = Path("config/deck.toml")
 GREATEST_SHIFT_M = 0.3
@@ -40,30 +42,38 @@ class RandomCell:
     deck_m: tuple[float, float, float]
     obstacles: tuple[Solid, ...]
 
-    def scene(self) -> CellScene:
-        """The shipped cell so changed, its poses over the station taught again.
+    def scene(self, follow: Collection[str] = ("main", "aux_1", "aux_2")) -> CellScene:
+        """The shipped cell so changed, the poses over the station of arms that ``follow`` taught
+        again.
 
         Raises ``PlaceUnreachable`` where an arm does not reach such a pose.
         """
         scene = read_model(load_cell(CELL_FILE), model_path(CELL_FILE), CELL_FILE.parent)
-        arms = {name: self._arm(arm) for name, arm in scene.arms.items()}
+        arms = {name: self._arm(arm, follow=name in follow) for name, arm in scene.arms.items()}
         robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
         solids = (*(self._changed(solid) for solid in scene.solids), *self.obstacles)
-        cell = scene.cell.model_copy(update={"robots": robots})
+        recipes = tuple(self._recipe(cast(DeckRecipe, one)) for one in scene.cell.recipes)
+        cell = scene.cell.model_copy(update={"robots": robots, "recipes": recipes})
         return replace(scene, cell=cell, arms=arms, solids=solids)
 
-    def _arm(self, arm: PlannedArm) -> PlannedArm:
+    def _recipe(self, recipe: DeckRecipe) -> DeckRecipe:
+        # The base of the main arm is the origin of the cell, and its axes are those of the cell.
+        x, y, z, *turn = recipe.base_T_frame
+        dx, dy, dz = (self.frame_shift_m / MM).tolist()
+        return recipe.model_copy(update={"base_T_frame": (x + dx, y + dy, z + dz, *turn)})
+
+    def _arm(self, arm: PlannedArm, *, follow: bool) -> PlannedArm:
         shift = RigidTransform.from_translation(self.heads_shift_m.get(arm.name, np.zeros(3)))
+        moved = replace(arm, cell_T_base=shift * arm.cell_T_base)
+        if not follow:
+            return moved
         pose = _OVER_STATION[arm.name]
         taught_rad = arm.taught_rad(pose)
         cell_T_flange = arm.cell_T_base * arm.base_T_flange(taught_rad)
-        moved = replace(arm, cell_T_base=shift * arm.cell_T_base)
-        follow = RigidTransform.from_translation(self.frame_shift_m)
-        base_T_flange = moved.cell_T_base.inv() * follow * cell_T_flange
+        with_frame = RigidTransform.from_translation(self.frame_shift_m)
+        base_T_flange = moved.cell_T_base.inv() * with_frame * cell_T_flange
         found_rad = joints_at(moved, StatedPlace(pose, taught_rad, base_T_flange))
-        poses_deg = {**arm.config.poses_deg, pose: tuple(np.degrees(found_rad).tolist())}
-        config = arm.config.model_copy(update={"poses_deg": poses_deg})
-        return replace(moved, config=config)
+        return taught_at(moved, pose, found_rad)
 
     def _changed(self, solid: Solid) -> Solid:
         if solid.name in ("frame", "station"):
@@ -73,6 +83,12 @@ class RandomCell:
         if solid.name == "main.deck":
             return replace(solid, shape=BoxShape(self.deck_m))
         return solid
+
+
+def taught_at(arm: PlannedArm, pose: str, joints_rad: Array) -> PlannedArm:
+    """The arm with this pose taught anew."""
+    poses_deg = {**arm.config.poses_deg, pose: tuple(np.degrees(joints_rad).tolist())}
+    return replace(arm, config=arm.config.model_copy(update={"poses_deg": poses_deg}))
 
 
 def random_cell(seed: int) -> RandomCell:

@@ -25,13 +25,27 @@ def test_all_but_the_heads_is_as_in_the_general_template() -> None:
     assert own == general
 
 
+def test_the_same_values_are_marked_to_be_filled_in() -> None:
+    """A mark that is missing leaves a box or a range of the fake cell in the file of a real one."""
+    general, own = ((CONFIG / "cell.toml").read_text(), TEMPLATE.read_text())
+    assert own.splitlines()[1:] != general.splitlines()
+    assert _without_heads(own).splitlines()[1:] == _without_heads(general).splitlines()
+
+
+def _without_heads(text: str) -> str:
+    begin, end = text.index(f"[{HEADS}."), text.index("# A Modbus coupler")
+    return text[:begin] + text[end:]
+
+
 def test_the_heads_are_four_different_cameras() -> None:
     heads = [GigeHeadConfig(**head["settings"]) for head in read(TEMPLATE)[HEADS].values()]
     cameras = [camera.serial_number for head in heads for camera in (head.left, head.right)]
     assert len(set(cameras)) == 4
 
 
-@pytest.mark.parametrize("key", ["producers", "left.serial_number", "right.serial_number"])
+@pytest.mark.parametrize(
+    "key", ["producers", "left.serial_number", "right.serial_number", "flange_T_camera"]
+)
 def test_what_no_template_can_know_is_marked(key: str) -> None:
     lines = [line for line in TEMPLATE.read_text().splitlines() if line.startswith(f"{key} =")]
     assert len(lines) == 2
