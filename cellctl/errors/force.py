@@ -157,7 +157,10 @@ class LiftOffHeld(ForceError):
     number = 529
     text = "Something holds the part while the robot leaves"
     cause = "Part fastened and gripper still shut, a pin that catches, or a hose that pulls."
-    remedy = "Open the gripper or loosen the part and free what catches; then Clear and Reset."
+    remedy = (
+        "Look where the part is. Where it sits on its seat: loosen it, or open the gripper. Where it "
+        "hangs: keep the gripper shut and free what pulls. Then Clear and Reset."
+    )
 
 
 class PayloadFileInvalid(ForceError):

@@ -63,7 +63,7 @@ class Acquisition(BaseModel):
     """Files of GenTL producers (``.cti``); without any, those of GENICAM_GENTL64_PATH."""
     trigger: Annotated[str, Field(pattern=rf"^(software|none|{Line})$")] = "software"
     """``Line1`` and so on: the next pulse on this input. ``none`` for a camera that runs freely:
-    the first image that was exposed wholly after the request is taken."""
+    the third image after the request is taken, of which the exposure surely begins after it."""
     burst: Annotated[int, Field(ge=1, le=64)] = 1
     """Exposures of which an image is the mean; nothing may move meanwhile."""
     pixel_format: str = ""
