@@ -105,7 +105,9 @@ def _in_images(scene: CellScene, head: StatedHead, points_m: Array) -> bool:
 
 
 def _projected(camera: CameraModel, points_m: Array, turn: Array, move_m: Array) -> Array:
-    found, _ = cv2.projectPoints(points_m, turn, move_m, camera.camera_matrix, camera.distortion)
+    # OpenCV takes rows in one piece only.
+    rows_m = np.ascontiguousarray(points_m)
+    found, _ = cv2.projectPoints(rows_m, turn, move_m, camera.camera_matrix, camera.distortion)
     return np.asarray(found.reshape(-1, 2))
 
 
