@@ -158,8 +158,8 @@ class LiftOffHeld(ForceError):
     text = "Something holds the part while the robot leaves"
     cause = "Part fastened and gripper still shut, a pin that catches, or a hose that pulls."
     remedy = (
-        "Look where the part is. Where it sits on its seat: loosen it, or open the gripper. Where it "
-        "hangs: keep the gripper shut and free what pulls. Then Clear and Reset."
+        "Look where the part is. Where it sits on its seat: loosen it, or open the gripper. Where "
+        "it hangs: keep the gripper shut and free what pulls. Then Clear and Reset."
     )
 
 

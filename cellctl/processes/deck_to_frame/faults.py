@@ -95,8 +95,8 @@ class DeckInGripper(ForceError):
     cause = "It was not taken out before a procedure whose moves need its space."
     remedy = (
         "Take it out, a heavy one with lifting gear. If the gripper is empty, the deck weighs too "
-        "little to be told from an empty one: invalidate the payload (`cellctl calibrate invalidate`) and identify it "
-        "again after."
+        "little to be told from an empty one: invalidate the payload "
+        "(`cellctl calibrate invalidate`) and identify it again after."
     )
     reaction = Reaction.STOP
 
