@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from benchmarks.planning.cells import DECKS_M, RandomCell, taught_at
 from cellctl.config.stated.views import StatedHead, StatedMeasurement, StatedPart
@@ -97,7 +98,7 @@ def _in_images(scene: CellScene, head: StatedHead, points_m: Array) -> bool:
     arm = scene.arms[head.robot]
     flange = arm.cell_T_base * arm.base_T_flange(arm.taught_rad(head.pose))
     in_left_m = (flange * head.flange_T_camera).inv().apply(points_m)
-    turn, _ = cv2.Rodrigues(head.camera.rotation)
+    turn = Rotation.from_matrix(head.camera.rotation).as_rotvec()
     left_px = _projected(head.camera.left, in_left_m, np.zeros(3), np.zeros(3))
     right_px = _projected(head.camera.right, in_left_m, turn, head.camera.translation_m)
     pixels = np.vstack([left_px, right_px])

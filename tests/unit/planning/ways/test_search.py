@@ -6,6 +6,7 @@ import pytest
 from cellctl.errors.config import NoFreeWay
 from cellctl.planning.scene.cell_scene import Standpoint
 from cellctl.planning.ways import search
+from cellctl.planning.ways.free import is_free_way
 from tests.unit.planning.deck_cell import deck_scene
 
 SCENE = deck_scene()
@@ -22,7 +23,7 @@ HOME, OVER = (SCENE.arms["main"].taught_rad(pose) for pose in ("home", "deck_mea
 def test_a_line_of_the_tree_that_is_not_free_is_no_way(monkeypatch: pytest.MonkeyPatch) -> None:
     """Both ends are free, and the heads are between them."""
     direct = np.vstack([HOME, OVER])
-    assert not search.is_free_way(AROUND, direct)
+    assert not is_free_way(AROUND, direct)
     monkeypatch.setattr(search, "_tree", lambda *_: direct)
     with pytest.raises(NoFreeWay):
         search.free_way(AROUND, HOME, OVER, seed=1, search_s=1.0)
