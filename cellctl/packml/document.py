@@ -21,8 +21,8 @@ file are the whole machine: `transitions` is built from them, and nothing else c
   begins when the cancelled coroutine has cleaned up. Stopping, Completing and Aborting, which begin
   with the stop of all motion, act at once and wait for it afterwards.
 - Hold and Suspend in Execute are noted and executed at the next safe point of the step. Execute is
-  then parked, not cancelled: after Unhold it goes on and is told that it was held (a process may begin again then: that of the deck
-  lifts off, drives home and measures the frame anew).
+  then parked, not cancelled: after Unhold it goes on and is told that it was held. A process may
+  begin again then: that of the deck lifts off, drives home and measures the frame anew.
 - A numbered fault leads by its reaction to Holding, Stopping or Aborting; where the present state
   does not allow that, to the next stronger one. Any other exception aborts. Faults latch; the
   command that leaves Held, Stopped or Aborted (Unhold, Reset, Clear) releases them.
