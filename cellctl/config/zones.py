@@ -42,8 +42,8 @@ class ZoneConfig(Section):
     robots: Annotated[dict[DeviceName, ZoneShare], Field(min_length=2)]
     retreat: tuple[DeviceName, ...] = ()
     """Robots in the order in which they leave when more than one of them is in the zone: each by
-    moves that go towards its ``way_out`` until they are beyond it, while the others stand. A robot
-    that is not named waits until it is alone."""
+    moves that lead to its ``way_out`` and not along it, until they are beyond it, while the others
+    stand. A robot that is not named waits until it is alone."""
     wait_s: Annotated[float, Field(ge=0.0, le=600.0)] = 30.0
     """How long a robot waits for another one that is on its way out."""
 

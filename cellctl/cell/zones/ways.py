@@ -15,8 +15,21 @@ from cellctl.interfaces.robot import ForwardKinematics
 GREATEST_RAD = 4.0 * np.pi
 """No joint of an arm turns further from its zero: twice the ±360° of data sheets."""
 WAVER_M = 0.001
-"""On its way out an arm may come back by so much from the nearest that it was to the face, as by
-its rounded joints."""
+"""On its way out an arm may fall behind by so much, as by its rounded joints."""
+LEAST_GAIN = 0.05
+"""Share of each stretch of a way out by which it must come nearer to the face.
+
+What stands beside an arm is in its way when it goes to the side, and the arbiter does not know
+where. Ways home are oblique all the same: that of the shipped deck cell rises by half a metre to
+home, and from near the face it gains 0.085 of its length at least, from 0.1 m before it 0.2 and
+from 0.3 m 0.4 (``tests/unit/cell/zones/test_ways_home.py``).
+"""
+DETOUR_M = 0.45
+"""A way out may be so much longer than the shortest one, which is straight to the face.
+
+Without it an arm deep in its box could go to the side for metres and gain its share. The ways home
+of the shipped deck cell take 0.41 m at most.
+"""
 
 
 class Way(Protocol):
@@ -31,8 +44,9 @@ class Way(Protocol):
         ...
 
     def leads_out(self, share: Share) -> bool:
-        """Whether it begins in the share and leads out through the face that is the way out: always
-        towards that face until it is beyond it, and never back into the share."""
+        """Whether it begins in the share and leads out through the face that is the way out: nearer
+        to that face on every stretch until it is beyond it, without a long way round, and never
+        back into the share."""
         ...
 
 
@@ -64,12 +78,29 @@ class FlangeWay:
         if not beyond.size:
             return False
         # Outside of its box no part of the arm reaches into the zone, so that it may then turn to
-        # any side, as a second move from there might. What is not a number fails either way.
+        # any side, as a second move from there might.
         first = beyond[0]
-        # From the nearest so far and not from point to point, of which a joint move has many.
-        until_face_m = before_face_m[: first + 1]
-        towards = np.all(until_face_m - np.minimum.accumulate(until_face_m) <= WAVER_M)
-        return bool(towards and not share.box.meets(self.points_m[first:]))
+        until_face_m = _cut(self.points_m[: first + 1], before_face_m[: first + 1])
+        gains = _gains(until_face_m, share.box.to_face_m(until_face_m, axis, upper=upper))
+        return bool(gains and not share.box.meets(self.points_m[first:]))
+
+
+def _cut(points_m: Array, before_face_m: Array) -> Array:
+    """Points of which the last one alone lies beyond the face, up to the face."""
+    share = before_face_m[-2] / (before_face_m[-2] - before_face_m[-1])
+    end_m = points_m[-2] + share * (points_m[-1] - points_m[-2])
+    return np.vstack([points_m[:-1], end_m])
+
+
+def _gains(points_m: Array, before_face_m: Array) -> bool:
+    """Whether a way leads to the face and not along it; what is not a number does not."""
+    steps_m = np.linalg.norm(np.diff(points_m, axis=0), axis=1)
+    length_m = np.concatenate([[0.0], np.cumsum(steps_m)])
+    # Each stretch of the way, and not each step from point to point, of which a joint move has
+    # many: a loss of less than the waver at each of them would add up.
+    behind_m = before_face_m + LEAST_GAIN * length_m
+    keeps_up = np.all(behind_m - np.minimum.accumulate(behind_m) <= WAVER_M)
+    return bool(keeps_up and length_m[-1] - before_face_m[0] <= DETOUR_M)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -128,7 +128,18 @@ def way(*points: tuple[float, float, float]) -> FlangeWay:
         (way((0.5, 0.0, 0.0), (0.2, 0.0, 0.0)), False),
         # Out, but through another face than the one that is meant.
         (way((1.2, 0.0, 0.0), (1.2, 0.0, 1.5)), False),
-        (way((1.8, 0.0, 0.0), (1.2, 0.9, 0.0), (0.9, 0.0, 0.0)), True),
+        (way((1.8, 0.0, 0.0), (1.2, 0.4, 0.0), (0.9, 0.0, 0.0)), True),
+        # To the side as a way out: far along the face with a hair of gain, straight or on the way.
+        (way((1.0005, -0.9, 0.0), (0.9995, 0.9, 0.0)), False),
+        (way((1.02, -0.45, 0.0), (0.98, 0.45, 0.0)), False),
+        (way((1.5, -0.5, 0.0), (1.499, 0.5, 0.0), (0.9, 0.5, 0.0)), False),
+        (way(*((1.5 - 0.0001 * n, 0.01 * n, 0.0) for n in range(50)), (0.9, 0.5, 0.0)), False),
+        # With gain enough on each stretch, but a long way round.
+        (way((1.8, -0.9, 0.0), (1.6, 0.9, 0.0), (0.9, 0.9, 0.0)), False),
+        # Oblique ways home, which end far beyond the face and to the side.
+        (way((1.02, 0.0, 0.0), (0.98, 0.4, 0.0)), True),
+        (way((1.5, 0.0, 0.0), (0.2, 0.9, 0.9)), True),
+        (way((1.001, 0.0, 0.0), (0.5, 5.0, 0.0)), True),
         (way((1.2, 0.0, 0.0), (1.21, 0.0, 0.0), (0.9, 0.0, 0.0)), False),
         # Away from the face by a hair at each of many points, as a joint move may swing.
         (way(*((1.2 + 0.0009 * n, 0.0, 0.0) for n in range(50)), (0.9, 0.0, 0.0)), False),

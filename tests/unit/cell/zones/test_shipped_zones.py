@@ -4,6 +4,7 @@ import asyncio
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.devices import Cell
 from cellctl.cell.zones.zoned_robot import ZonedRobot, ZonedStreamingRobot, zoned_robots
@@ -102,6 +103,19 @@ async def test_a_main_arm_and_a_head_in_one_zone_leave_in_the_order_of_the_cell_
         await arms.go("aux_1", arms.taught("aux_1", "measuring") + 0.01)
     await arms.go("main", arms.taught("main", "home"))
     await arms.go("aux_1", arms.taught("aux_1", "retracted"))
+
+
+async def test_to_the_side_beside_a_head_is_no_way_out(config: CellConfig) -> None:
+    """1.2 m past the head, with 30 mm of gain towards the way out, which ends beyond it."""
+    arms = Arms(config, main="home", aux_1="retracted", aux_2="measuring")
+    arms.still["main"].flange = RigidTransform.from_translation([1.0, 0.08, 1.4])
+    speed = {"speed_m_s": 0.05, "acceleration_m_s2": 0.2}
+    past_head = RigidTransform.from_translation([2.2, 0.05, 1.4])
+    with pytest.raises(ZoneTaken, match="aux_2 stands in it"):
+        await arms.zoned["main"].move_linear(past_head, **speed)
+    assert not arms.still["main"].moves
+    out = RigidTransform.from_translation([1.0, 0.05, 1.4])
+    await arms.zoned["main"].move_linear(out, **speed)
 
 
 def test_the_robots_of_a_cell_ask_the_arbiter(config: CellConfig) -> None:
