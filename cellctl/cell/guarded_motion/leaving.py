@@ -3,9 +3,13 @@
 import asyncio
 from dataclasses import replace
 
+import numpy as np
+
 from cellctl.cell.guarded_motion.guard_port import GuardPort
 from cellctl.errors.force import LiftOffHeld
+from cellctl.geometry.pose import Array
 from cellctl.guard.client import GuardClient
+from cellctl.guard.report import GuardSamples
 from cellctl.interfaces import Robot
 
 _READING_S = 0.1
@@ -37,13 +41,23 @@ async def pressed_n(guard: GuardClient, inwards: float, most_n: float) -> float:
     hidden_n = guard.hidden_axial_n
     if not guard.in_part_frame or hidden_n is None:
         return most_n
-    # The clock of the loop is the one that stamps samples, also in a loop whose time is simulated.
-    begin_s = asyncio.get_running_loop().time()
-    await asyncio.sleep(_READING_S)
-    wrench = guard.samples(begin_s).wrench
+    wrench = (await _newest(guard)).wrench
     if not len(wrench):
         return most_n
     return min(most_n, -inwards * (hidden_n + float(wrench[:, 2].mean())))
+
+
+async def newest_raw(guard: GuardClient) -> Array | None:
+    """What the sensor itself reads at this moment, shape (6,); None without samples."""
+    raw = (await _newest(guard)).raw
+    return np.asarray(raw.mean(axis=0)) if len(raw) else None
+
+
+async def _newest(guard: GuardClient) -> GuardSamples:
+    # The clock of the loop is the one that stamps samples, also in a loop whose time is simulated.
+    begin_s = asyncio.get_running_loop().time()
+    await asyncio.sleep(_READING_S)
+    return guard.samples(begin_s)
 
 
 def change_while_drawn_n(pull_n: float, press_n: float) -> float:

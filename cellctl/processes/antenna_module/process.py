@@ -12,11 +12,12 @@ from cellctl.processes.antenna_module.faults.connector import ContactBent, Conta
 from cellctl.processes.antenna_module.faults.plugging import (
     FORCE_FAULTS,
     GrippedOffTwice,
+    ModuleInGripper,
     MovedOnRelease,
 )
 from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, ROLES
+from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, FORCE, ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
@@ -163,8 +164,16 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         from cellctl.processes.antenna_module.stations import antenna_recipes
 
         recipes = antenna_recipes(self.services.cell.config)
-        if recipes:
-            await leave_stations(self.cell(recipes[0]))
+        by_arm = {recipe.device(FORCE): recipe for recipe in reversed(recipes)}
+        held: ModuleInGripper | None = None
+        for recipe in by_arm.values():
+            try:
+                await leave_stations(self.cell(recipe))
+            # The other arms leave their stations all the same.
+            except ModuleInGripper as fault:
+                held = fault
+        if held is not None:
+            raise held
 
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:

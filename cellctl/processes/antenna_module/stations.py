@@ -50,6 +50,16 @@ class AntennaCell:
         )
 
     @property
+    def recipes(self) -> tuple[AntennaRecipe, ...]:
+        """The recipes of this arm: tray and socket are stated in the base of the arm that works
+        there."""
+        return tuple(
+            recipe
+            for recipe in antenna_recipes(self.cell.config)
+            if recipe.device(FORCE) == self.arm.sensor_name
+        )
+
+    @property
     def workers(self) -> VisionWorkers:
         """The vision workers, for images and long solves."""
         return self.cell.workers

@@ -8,6 +8,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.stated.moves import StatedMove
+from cellctl.errors.calibration import CalibrationError
 from cellctl.processes.deck_to_frame.faults import SeatedOffPosition
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record_names import (
@@ -28,6 +29,7 @@ from cellctl.runtime.steps import Steps
 if TYPE_CHECKING:
     from cellctl.calibration.store.kind import Kinds
     from cellctl.config.stated.views import StatedMeasurement
+    from cellctl.force.gravity.gravity_compensation import GravityCompensation
     from cellctl.processes.deck_to_frame.run import OpenRun
     from cellctl.processes.deck_to_frame.run_facts import RunFacts
     from cellctl.processes.deck_to_frame.state import Ready
@@ -174,8 +176,9 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         """Lift the deck off the station, wherever a recipe's deck would be low over its frame."""
         from cellctl.processes.deck_to_frame.moves.lift_off import lift_off
 
+        payload = self._payload_or_none()
         for cell in self._cells():
-            await lift_off(cell)
+            await lift_off(cell, payload)
 
     async def show_contact_force(self) -> None:
         """Less the payload that was identified last; of a deck on its frame in the deck's axes."""
@@ -210,6 +213,16 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         # first recipe.
         cell = next(iter(self._cells()), None)
         return () if cell is None else deck_procedures(cell, self.services, self._waiting)
+
+    def _payload_or_none(self) -> "GravityCompensation | None":
+        """The payload that was identified last; none where that is not valid: a Reset needs none,
+        and knows the less of what pulls after a restart."""
+        from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
+
+        try:
+            return self.services.calibrations.read(PAYLOAD).gravity_compensation
+        except CalibrationError:
+            return None
 
     def cell(self, recipe: DeckRecipe) -> "DeckCell":
         """The devices in the roles of a recipe."""

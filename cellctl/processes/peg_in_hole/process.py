@@ -16,7 +16,7 @@ from cellctl.processes.peg_in_hole.faults import (
     PegWedged,
 )
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
-from cellctl.processes.peg_in_hole.roles import ROLES
+from cellctl.processes.peg_in_hole.roles import FORCE, ROLES
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
@@ -129,20 +129,16 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
     async def clear(self) -> None:
         """Out of the hole along its axis, home; the part comes along."""
         from cellctl.processes.peg_in_hole.leaving import leave_hole
-        from cellctl.processes.peg_in_hole.stations import peg_recipes
 
-        recipes = peg_recipes(self.services.cell.config)
-        if recipes:
-            await leave_hole(self.cell(recipes[0]))
+        for cell in self._cells():
+            await leave_hole(cell)
 
     async def show_contact_force(self) -> None:
         """Less part and gripper by the recipe; of a tip in its hole in the tip's axes."""
         from cellctl.processes.peg_in_hole.leaving import show_force_on_tip
-        from cellctl.processes.peg_in_hole.stations import peg_recipes
 
-        recipes = peg_recipes(self.services.cell.config)
-        if recipes:
-            await show_force_on_tip(self.cell(recipes[0]))
+        for cell in self._cells():
+            await show_force_on_tip(cell)
 
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
@@ -166,3 +162,11 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         from cellctl.processes.peg_in_hole.stations import PegCell
 
         return PegCell.of(self.services.cell, recipe)
+
+    def _cells(self) -> "list[PegCell]":
+        """Each arm that recipes use, once."""
+        from cellctl.processes.peg_in_hole.stations import peg_recipes
+
+        recipes = peg_recipes(self.services.cell.config)
+        by_arm = {recipe.device(FORCE): recipe for recipe in reversed(recipes)}
+        return [self.cell(recipe) for recipe in by_arm.values()]

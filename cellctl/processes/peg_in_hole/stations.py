@@ -41,6 +41,15 @@ class PegCell:
         )
 
     @property
+    def recipes(self) -> tuple[PegRecipe, ...]:
+        """The recipes of this arm: a hole is stated in the base of the arm that works at it."""
+        return tuple(
+            recipe
+            for recipe in peg_recipes(self.cell.config)
+            if recipe.device(FORCE) == self.arm.sensor_name
+        )
+
+    @property
     def robot(self) -> StreamingRobot:
         """The arm; the check of the cell file saw to it that it follows a stream."""
         return cast(StreamingRobot, self.arm.robot)

@@ -13,7 +13,7 @@ from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.run import PluggingRun
 from cellctl.processes.antenna_module.state import GripperEmpty
-from cellctl.processes.antenna_module.stations import AntennaCell, antenna_recipes
+from cellctl.processes.antenna_module.stations import AntennaCell
 
 _BESIDE_M = 60e-3
 """Flange so near a place of plug or tray, seen from above, may have its fingers round a module."""
@@ -37,7 +37,7 @@ async def leave_stations(cell: AntennaCell) -> None:
     state = await cell.gripper.state()
     holding = state.part_present and not state.opened
     if holding:
-        for recipe in antenna_recipes(cell.cell.config):
+        for recipe in cell.recipes:
             await draw_out(cell, recipe)
     mover = Mover(cell)
     height_m = _height_to_leave_m(cell)
@@ -55,7 +55,7 @@ def _height_to_leave_m(cell: AntennaCell) -> float:
     return max(
         (
             _missing_m(here, recipe, base_T_plug)
-            for recipe in antenna_recipes(cell.cell.config)
+            for recipe in cell.recipes
             for base_T_plug in (
                 nominal(recipe.base_T_tray_plug),
                 nominal(recipe.base_T_socket) * MATED_TURN,

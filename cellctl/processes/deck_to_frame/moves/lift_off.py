@@ -6,10 +6,11 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
 from cellctl.cell.guarded_motion.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
-from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
+from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, newest_raw, pressed_n
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.guard.limits import DEFAULT_FILTER_S
 from cellctl.processes.deck_to_frame.poses.pose_limits import is_near
@@ -37,11 +38,12 @@ NEAR_STATION_M = 0.8
 """Along either axis of the frame, between its middle and the deck's: they may overlap."""
 
 
-async def lift_off(cell: DeckCell) -> None:
+async def lift_off(cell: DeckCell, payload: GravityCompensation | None = None) -> None:
     """Move the deck away from the station along the approach, slowly at first, under the guard.
 
     The direction is the normal of the frame as measured last, else as the recipe has it. Nothing
-    moves when the deck is not low over the station. Raises ``LiftOffHeld`` when the force changes
+    moves when the deck is not low over the station. With the ``payload`` as it was identified, a
+    deck that is pulled is known as one after a restart, too, which has forgotten the zero. Raises ``LiftOffHeld`` when the force changes
     by more than a mating may press, and the faults of guard and robot; the arm then stays stopped.
     """
     base_T_flange = cell.main.state().base_T_flange
@@ -55,7 +57,8 @@ async def lift_off(cell: DeckCell) -> None:
     flange_T_deck = pose_from_xyzabc(recipe.flange_T_deck)
     guarded = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck)
     # Before the tare hides it.
-    press_n = await pressed_n(cell.arm.guard, _INWARDS, mating.limit_force_n)
+    most_n = await _most_pressed_n(cell, recipe, payload)
+    press_n = await pressed_n(cell.arm.guard, _INWARDS, most_n)
     try:
         async with guarded(_tolerance(mating, press_n), hides_axial_n=-_INWARDS * press_n) as move:
             first_m_s = first_lift_speed_m_s(mating, cell.force_config)
@@ -69,6 +72,31 @@ async def lift_off(cell: DeckCell) -> None:
             await _rise(cell, mating, base_T_flange, away, move)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault
+
+
+async def _most_pressed_n(
+    cell: DeckCell, recipe: DeckRecipe, payload: GravityCompensation | None
+) -> float:
+    """With so much the deck may be pressed on its frame before anything is known of the zero:
+    negative where it is surely pulled.
+
+    Without this each restart would forget a pull, and each Reset after one add as much again. The
+    reading less the payload is off by what a run lets it be off before its own zero, because the
+    sensor drifts and a compensation leaves something of the weight.
+    """
+    mating, guard = recipe.mating, cell.arm.guard
+    told = guard.in_part_frame and guard.hidden_axial_n is not None
+    if payload is None or told:
+        return mating.limit_force_n
+    raw = await newest_raw(guard)
+    if raw is None:
+        return mating.limit_force_n
+    base_R_flange = cell.main.state().base_T_flange.rotation
+    flange_R_sensor = cell.arm.flange_T_sensor.rotation
+    contact = payload.apply(raw, base_R_flange * flange_R_sensor)
+    flange_R_deck = pose_from_xyzabc(recipe.flange_T_deck).rotation
+    along_n = float((flange_R_deck.inv() * flange_R_sensor).apply(contact[:3])[2])
+    return min(mating.limit_force_n, -_INWARDS * along_n + mating.max_untared_force_n)
 
 
 def _tolerance(mating: Mating, press_n: float) -> WrenchTolerance:

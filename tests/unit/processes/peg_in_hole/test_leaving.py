@@ -1,6 +1,7 @@
 """Out of the hole in a new daemon, whose guard knows nothing, and what the force is told as."""
 
 from contextlib import nullcontext
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -9,14 +10,16 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_robot import GuardedRobot
-from cellctl.errors.force import LiftOffHeld
+from cellctl.errors.force import LiftOffHeld, NotSettled
 from cellctl.errors.robot import MotionRejected
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.client import GuardClient
 from cellctl.guard.limits import GuardLimits
+from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import Robot
 from cellctl.processes.peg_in_hole.leaving import CLEAR_OF_FACE_M, leave_hole, show_force_on_tip
+from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.stations import OVER, PegCell, peg_recipes
 from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.guard import TinyGuard
@@ -54,7 +57,7 @@ def flange_at(depth_mm: float, x_mm: float = 0.0) -> RigidTransform:
 
 
 def left_at(
-    depth_mm: float, x_mm: float = 0.0, config: Any = CELL
+    depth_mm: float, x_mm: float = 0.0, config: Any = CELL, stiffness_n_mm: float | None = None
 ) -> tuple[PegCell, StillRobot, NewGuard]:
     guard = NewGuard()
     robot = StillRobot("arm", flange=flange_at(depth_mm, x_mm), watched_by=guard)
@@ -64,8 +67,10 @@ def left_at(
         cast(GuardClient, guard), CELL.force_sensors[sensor],
     )  # fmt: skip
     cell: Any = SimpleNamespace(config=config, trips_awaited=lambda _: nullcontext())
-    nothing: Any = None
-    return PegCell(cell, arm, nothing), robot, guard
+    settings = CELL.processes["peg-in-hole"]
+    if stiffness_n_mm is not None:
+        settings = settings.model_copy(update={"stiffness_n_mm": stiffness_n_mm})
+    return PegCell(cell, arm, cast(PegSettings, settings)), robot, guard
 
 
 @pytest.mark.parametrize("armed", [False, True], ids=["restarted", "stopped"])
@@ -73,8 +78,8 @@ async def test_the_weight_is_known_before_the_arm_leaves_the_hole(armed: bool) -
     cell, robot, guard = left_at(5.0)
     guard.armed = armed
     await leave_hole(cell)
-    assert [move.kind for move in robot.moves] == ["linear", "joint"]
-    risen_m = robot.moves[0].target.translation[2] - flange_at(5.0).translation[2]
+    assert [move.kind for move in robot.moves] == ["linear", "linear", "joint"]
+    risen_m = robot.moves[1].target.translation[2] - flange_at(5.0).translation[2]
     assert risen_m > CLEAR_OF_FACE_M + 5e-3
     (recipe,) = peg_recipes(CELL)
     for load in guard.moved_with:
@@ -128,6 +133,55 @@ async def test_a_peg_that_holds_a_full_pull_is_not_pulled_again() -> None:
     assert robot.moves == []
 
 
+async def test_a_part_that_is_held_is_told_as_one_and_stays_where_it_is() -> None:
+    cell, robot, guard = left_at(5.0)
+    guard.trip = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz 51.0 N, limit 50.00 N", 2, 51.0)
+    with pytest.raises(LiftOffHeld, match=r"out of its hole: .*Fz 51\.0 N"):
+        await leave_hole(cell)
+    assert len(robot.moves) <= 1
+    assert robot.latched
+    assert guard.armed, "watched until somebody clears"
+
+
+@pytest.mark.parametrize(
+    ("stiffness_n_mm", "first_mm"), [(120.0, 0.833), (1000.0, 0.4), (1.0, None)]
+)
+async def test_the_first_stretch_is_slow_until_a_part_that_is_held_would_have_stopped_it(
+    stiffness_n_mm: float, first_mm: float | None
+) -> None:
+    cell, robot, _ = left_at(5.0, stiffness_n_mm=stiffness_n_mm)
+    await leave_hole(cell)
+    *pulls, _ = robot.moves
+    start_m = flange_at(5.0).translation[2]
+    heights_mm = [(move.target.translation[2] - start_m) * 1e3 for move in pulls]
+    assert pulls[0].speed == 1e-3
+    if first_mm is None:
+        assert len(pulls) == 1, "an arm so soft is slow all the way"
+    else:
+        assert heights_mm[0] == pytest.approx(first_mm, abs=1e-3)
+        assert pulls[1].speed == 5e-3
+        assert heights_mm[1] == pytest.approx(21.5, abs=1e-6)
+
+
+async def test_a_load_that_swings_leaves_the_pull_known() -> None:
+    cell, robot, guard = left_at(5.0)
+    guard.gravity_compensated = guard.in_part_frame = True
+    guard.raw, guard.hidden_axial_n = guard.raw * 0.05, 10.0
+    guard.settling = replace(guard.settling, timeout_s=0.0)
+    with pytest.raises(NotSettled):
+        await leave_hole(cell)
+    assert robot.moves == []
+    assert guard.hidden_axial_n == 10.0, "pulled with 10 N already"
+
+
+async def test_the_hole_of_another_arm_is_not_left() -> None:
+    (recipe,) = peg_recipes(CELL)
+    others = recipe.model_copy(update={"roles": {"force": "another_sensor"}})
+    cell, robot, _ = left_at(5.0, config=SimpleNamespace(recipes=(others,)))
+    await leave_hole(cell)
+    assert [move.kind for move in robot.moves] == ["joint"]
+
+
 async def test_the_force_on_a_tip_in_its_hole_is_told_in_its_axes_without_the_weight() -> None:
     cell, robot, guard = left_at(5.0)
     await show_force_on_tip(cell)
@@ -147,7 +201,7 @@ async def test_from_a_touch_on_a_wide_circle_the_arm_leaves_straight_as_well() -
     wide = recipe.model_copy(update={"base_T_hole": place})
     cell, robot, _ = left_at(0.0, x_mm=70.0, config=SimpleNamespace(recipes=(wide,)))
     await leave_hole(cell)
-    assert [move.kind for move in robot.moves] == ["linear", "joint"]
+    assert [move.kind for move in robot.moves] == ["linear", "linear", "joint"]
 
 
 async def test_away_from_the_hole_the_weight_is_known_and_the_axes_are_the_sensors() -> None:

@@ -10,7 +10,7 @@ from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.processes.antenna_module.faults.plugging import ModuleInGripper
 from cellctl.processes.antenna_module.moves import start
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
-from cellctl.processes.antenna_module.stations import AntennaCell
+from cellctl.processes.antenna_module.stations import AntennaCell, antenna_recipes
 from tests.rigs.shipped import shipped_cell
 from tests.unit.processes.antenna_module.steps.bench import TAUGHT, Bench
 
@@ -24,7 +24,7 @@ def cell_of(bench: Bench, *, opened: bool, part: bool) -> AntennaCell:
 
     made: Any = bench.run().cell
     made.gripper = SimpleNamespace(state=state, open=bench.open)
-    made.cell.config = shipped_cell("antenna.toml")
+    made.recipes = antenna_recipes(shipped_cell("antenna.toml"))
     return cast(AntennaCell, made)
 
 

@@ -8,10 +8,12 @@ import pytest
 
 from cellctl.daemon.supervision import LinkMonitor
 from cellctl.errors.force import LiftOffHeld, NotSettled
+from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 from cellctl.processes.deck_to_frame.moves.lift_off import lift_off
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
@@ -104,6 +106,57 @@ async def test_a_deck_that_holds_a_full_pull_is_not_pulled_again(bench: Bench) -
         with pytest.raises(LiftOffHeld, match="pulled with 52 N already, allowed 50 N"):
             await lift_off(bench.deck)
     assert bench.cell.main.moves == []
+
+
+@pytest.mark.parametrize(
+    ("along_n", "may_n"),
+    [(40.0, 50.0), (0.0, 50.0), (-75.0, 50.0), (-110.0, 20.0), (1800.0, 50.0)],
+    ids=["pressed", "free", "within what a zero may be off", "pulled", "deck let go"],
+)
+@pytest.mark.parametrize("in_frame", [False, True], ids=["", "told of"])
+async def test_after_a_restart_the_payload_tells_a_pull_that_the_guard_has_forgotten(
+    bench: Bench, along_n: float, may_n: float, in_frame: bool
+) -> None:
+    payload = restarted(bench, along_n, in_frame=in_frame)
+    await lift_off(bench.deck, payload)
+    first, _ = bench.cell.guard.limits
+    assert bench.recipe.mating.max_untared_force_n == 80.0
+    assert first.filtered[2] == pytest.approx(may_n, abs=0.5)
+
+
+@pytest.mark.parametrize("attempt", [1, 2])
+async def test_a_held_deck_is_not_pulled_the_more_with_every_restart(
+    bench: Bench, attempt: int
+) -> None:
+    for _ in range(attempt):
+        payload = restarted(bench, -130.0)
+        with pytest.raises(LiftOffHeld, match="pulled with 50 N already, allowed 50 N"):
+            await lift_off(bench.deck, payload)
+    assert bench.cell.main.moves == []
+
+
+async def test_a_zero_that_is_known_counts_and_not_the_payload(bench: Bench) -> None:
+    payload = restarted(bench, -130.0)
+    guard = bench.cell.guard
+    guard.in_part_frame, guard.hidden_axial_n = True, -guard.raw[:, 2].mean()
+    await lift_off(bench.deck, payload)
+    first, _ = guard.limits
+    assert first.filtered[2] == pytest.approx(50.0, abs=0.5)
+
+
+def restarted(bench: Bench, along_n: float, *, in_frame: bool = False) -> GravityCompensation:
+    """A deck on its seat with this force along the approach, and a guard that knows no zero; the
+    payload as it was identified."""
+    main, guard = bench.cell.main, bench.cell.guard
+    main.flange = bench.flange_over_seat(0.0)
+    payload = bench.snapshot().get(PAYLOAD).gravity_compensation
+    base_R_sensor = main.flange.rotation * bench.deck.arm.flange_T_sensor.rotation
+    base_R_deck = (main.flange * bench.grip).rotation
+    contact = base_R_sensor.inv().apply(base_R_deck.apply([0.0, 0.0, along_n]))
+    noise = np.random.default_rng(1).normal(0.0, 0.05, (200, 6))
+    guard.raw = noise + payload.load(base_R_sensor) + np.concatenate([contact, np.zeros(3)])
+    guard.in_part_frame, guard.hidden_axial_n = in_frame, None
+    return payload
 
 
 async def test_a_load_that_swings_leaves_the_pull_known(bench: Bench) -> None:
