@@ -1,15 +1,21 @@
 """After a daemon that died in a run, the next start says where the arm stands and what it feels."""
 
+import asyncio
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from cellctl.errors.force import LiftOffHeld
 from cellctl.errors.link import StaleData
 from cellctl.errors.records import RecordNotWritten, RunInterrupted
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.guard.report import GuardTrip, TripReason
+from cellctl.packml.command import Command
+from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 from cellctl.records.store import RunStore
 from tests.unit.daemon_rig import DaemonRig
 
@@ -85,3 +91,66 @@ async def test_without_the_axes_of_the_part_no_component_has_a_sign(died: Daemon
     assert "force: 20.0 N, without the payload's weight" in text
     assert "Fz" not in text
     assert math.isnan(died.shown().force_z_n)
+
+
+async def test_reset_after_the_crash_lifts_off_under_the_guard_from_a_zero_of_its_own(
+    died: DaemonRig,
+) -> None:
+    await died.open()
+    main, guard = died.bench.cell.main, died.bench.cell.guard
+    before = len(main.moves)
+    # Of every move the robot itself sees to it that its guard is armed.
+    await died.idle()
+    lift, *_ = main.moves[before:]
+    assert lift.kind == "linear"
+    assert lift.target.translation[2] > died.bench.flange_over_seat(0.0).translation[2]
+    limit_n = died.bench.recipe.mating.limit_force_n
+    first, rise = guard.limits[-2:]
+    assert first.filtered[2] == rise.filtered[2] == limit_n
+    assert guard.asked.index("set_wrench_frame") < guard.asked.index("tare")
+    assert RunInterrupted.number in died.shown().alarms, "until somebody has acknowledged it"
+    assert not died.unit.machine.faults
+
+
+async def test_a_deck_that_is_held_ends_the_reset_after_a_crash_and_costs_no_calibration(
+    died: DaemonRig,
+) -> None:
+    await died.open()
+    main, guard = died.bench.cell.main, died.bench.cell.guard
+    before, limited = len(main.moves), len(guard.limits)
+    main.road_is_free = asyncio.Event()
+    main.on_the_way.clear()
+    assert await died.take(Command.RESET) is RejectCode.NONE
+    await main.on_the_way.wait()
+    guard.trip = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -50.3 N, limit 50.00 N", 2, -50.3)
+    await died.until(lambda: main.stops > 0)
+    main.road_is_free.set()
+    await died.to(State.ABORTED)
+    assert [type(fault) for fault in died.unit.machine.faults] == [LiftOffHeld]
+    assert len(main.moves) == before + 1
+    assert len(guard.limits) == limited + 1
+    await died.unit.background.drain()
+    died.bench.snapshot()  # would raise CalibrationInvalidated
+
+
+async def test_a_restart_does_not_forget_a_pull_where_the_payload_is_known(
+    died: DaemonRig,
+) -> None:
+    bench = died.bench
+    main, guard = bench.cell.main, bench.cell.guard
+    payload = bench.snapshot().get(PAYLOAD).gravity_compensation
+    base_R_sensor = main.flange.rotation * bench.deck.arm.flange_T_sensor.rotation
+    down = base_R_sensor.inv().apply([0.0, 0.0, -200.0])
+    guard.raw = guard.raw * 0.0 + payload.load(base_R_sensor) + np.array([*down, 0.0, 0.0, 0.0])
+    await died.open()
+    before = len(main.moves)
+    for _ in range(2):
+        assert await died.take(Command.RESET) is RejectCode.NONE
+        await died.to(State.ABORTED)
+        assert [type(fault) for fault in died.unit.machine.faults] == [LiftOffHeld]
+        assert "pulled with 120 N already" in str(died.unit.machine.faults[0])
+        assert len(main.moves) == before
+        # As somebody does who hopes that it helps.
+        guard.hidden_axial_n = None
+        guard.in_part_frame = guard.gravity_compensated = False
+        await died.restart()

@@ -43,8 +43,9 @@ async def lift_off(cell: DeckCell, payload: GravityCompensation | None = None) -
 
     The direction is the normal of the frame as measured last, else as the recipe has it. Nothing
     moves when the deck is not low over the station. With the ``payload`` as it was identified, a
-    deck that is pulled is known as one after a restart, too, which has forgotten the zero. Raises ``LiftOffHeld`` when the force changes
-    by more than a mating may press, and the faults of guard and robot; the arm then stays stopped.
+    deck that is pulled is known as one after a restart, too, which has forgotten the zero. Raises
+    ``LiftOffHeld`` when the force changes by more than a mating may press, and the faults of guard
+    and robot; the arm then stays stopped.
     """
     base_T_flange = cell.main.state().base_T_flange
     recipe = recipe_below(cell, base_T_flange)
