@@ -17,6 +17,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 from cellctl.records.store import RunStore
+from tests.unit.cell.guard import TinyGuard
 from tests.unit.daemon_rig import DaemonRig
 
 
@@ -93,12 +94,19 @@ async def test_without_the_axes_of_the_part_no_component_has_a_sign(died: Daemon
     assert math.isnan(died.shown().force_z_n)
 
 
+def noisy(guard: TinyGuard) -> None:
+    """A sensor that repeats its values counts as frozen, and nothing is lifted."""
+    guard.raw = guard.raw + np.random.default_rng(1).normal(0.0, 0.05, guard.raw.shape)
+
+
 async def test_reset_after_the_crash_lifts_off_under_the_guard_from_a_zero_of_its_own(
     died: DaemonRig,
 ) -> None:
     await died.open()
     main, guard = died.bench.cell.main, died.bench.cell.guard
+    noisy(guard)
     before = len(main.moves)
+    guard.asked.clear()
     # Of every move the robot itself sees to it that its guard is armed.
     await died.idle()
     lift, *_ = main.moves[before:]
@@ -107,7 +115,8 @@ async def test_reset_after_the_crash_lifts_off_under_the_guard_from_a_zero_of_it
     limit_n = died.bench.recipe.mating.limit_force_n
     first, rise = guard.limits[-2:]
     assert first.filtered[2] == rise.filtered[2] == limit_n
-    assert guard.asked.index("set_wrench_frame") < guard.asked.index("tare")
+    begun = guard.asked[: guard.asked.index("arm") + 1]
+    assert begun[-3:] == ["set_wrench_frame", "tare", "arm"]
     assert RunInterrupted.number in died.shown().alarms, "until somebody has acknowledged it"
     assert not died.unit.machine.faults
 
@@ -117,11 +126,12 @@ async def test_a_deck_that_is_held_ends_the_reset_after_a_crash_and_costs_no_cal
 ) -> None:
     await died.open()
     main, guard = died.bench.cell.main, died.bench.cell.guard
+    noisy(guard)
     before, limited = len(main.moves), len(guard.limits)
     main.road_is_free = asyncio.Event()
     main.on_the_way.clear()
     assert await died.take(Command.RESET) is RejectCode.NONE
-    await main.on_the_way.wait()
+    await died.until(main.on_the_way.is_set)
     guard.trip = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -50.3 N, limit 50.00 N", 2, -50.3)
     await died.until(lambda: main.stops > 0)
     main.road_is_free.set()
@@ -140,8 +150,9 @@ async def test_a_restart_does_not_forget_a_pull_where_the_payload_is_known(
     main, guard = bench.cell.main, bench.cell.guard
     payload = bench.snapshot().get(PAYLOAD).gravity_compensation
     base_R_sensor = main.flange.rotation * bench.deck.arm.flange_T_sensor.rotation
-    down = base_R_sensor.inv().apply([0.0, 0.0, -200.0])
-    guard.raw = guard.raw * 0.0 + payload.load(base_R_sensor) + np.array([*down, 0.0, 0.0, 0.0])
+    inwards = (main.flange * bench.grip).rotation.apply([0.0, 0.0, -200.0])
+    pull = np.concatenate([base_R_sensor.inv().apply(inwards), np.zeros(3)])
+    guard.raw = np.tile(payload.load(base_R_sensor) + pull, (50, 1))
     await died.open()
     before = len(main.moves)
     for _ in range(2):
