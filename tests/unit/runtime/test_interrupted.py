@@ -105,13 +105,14 @@ async def test_reset_after_the_crash_lifts_off_under_the_guard_from_a_zero_of_it
     await died.open()
     main, guard = died.bench.cell.main, died.bench.cell.guard
     noisy(guard)
-    before = len(main.moves)
+    before, left_at = len(main.moves), main.flange
     guard.asked.clear()
     # Of every move the robot itself sees to it that its guard is armed.
     await died.idle()
     lift, *_ = main.moves[before:]
     assert lift.kind == "linear"
-    assert lift.target.translation[2] > died.bench.flange_over_seat(0.0).translation[2]
+    frame_z = died.bench.station.rotation.apply([0.0, 0.0, 1.0])
+    assert frame_z @ (lift.target.translation - left_at.translation) > 0.0
     limit_n = died.bench.recipe.mating.limit_force_n
     first, rise = guard.limits[-2:]
     assert first.filtered[2] == rise.filtered[2] == limit_n
