@@ -17,6 +17,7 @@ from cellctl.calibration.judged_insertion import JudgedInsertion
 from cellctl.calibration.output_file import write_file
 from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.config import FileInvalid
+from cellctl.files.hand_written import read_hand_written
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.processes.antenna_module.chain.plan import ContactPattern, PlugTolerance, plan_plug
 from cellctl.processes.antenna_module.chain.schemes import SCHEMES, Scheme
@@ -32,8 +33,10 @@ from cellctl.processes.antenna_module.commands.trial_file import (
 )
 from cellctl.processes.antenna_module.commands.turn_file import TurnFile
 from cellctl.processes.antenna_module.connector.connector import read_connector
+from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
-from cellctl.processes.antenna_module.insertion.curve import parse_curve, require_possible_units
+from cellctl.processes.antenna_module.insertion.curve import parse_curve
+from cellctl.processes.antenna_module.insertion.possible import require_possible_curve
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 
 T = TypeVar("T")
@@ -97,12 +100,23 @@ def judge_by_connector(curve: Path, connector: Path) -> JudgedInsertion:
     """The judge of `cellctl judge-insertion --connector`; raises ``InsertionCurveInvalid`` and the
     faults of a drawing."""
     try:
-        text = curve.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InsertionCurveInvalid(f"{curve}: {error}") from error
-    read, drawing = parse_curve(text), read_connector(connector)
+        text = read_hand_written(curve)
+    except OSError as error:
+        raise InsertionCurveInvalid(f"{curve}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
+        raise InsertionCurveInvalid(
+            f"{curve}: not UTF-8 (byte {error.start + 1}); save it as CSV in UTF-8"
+        ) from error
+    drawing = read_connector(connector)
+    if drawing.kind != "holes":
+        # By the plug's drawing, the mirror image, the other end of the row would be suspected.
+        raise ConnectorFileInvalid(
+            f"{connector}: {drawing.name} has {drawing.kind}, not holes; give the socket's drawing:"
+            " a curve is in the axes of the socket (docs/plugging.md)"
+        )
     try:
-        require_possible_units(read, drawing.seat_depth_m, drawing.force_n[1])
+        read = parse_curve(text)
+        require_possible_curve(read, drawing)
     except InsertionCurveInvalid as fault:
         raise InsertionCurveInvalid(f"{curve}: {fault.detail}") from fault
     judgement = judge_insertion(read, drawing)

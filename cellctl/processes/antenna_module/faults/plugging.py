@@ -123,8 +123,14 @@ class PlugShortSeat(PluggingError):
 
     number = 572
     text = "Plug is not seated at its depth"
-    cause = "A foreign body, a shell that catches, or a socket at another height."
-    remedy = "Put the module into quarantine; inspect socket and shell."
+    cause = (
+        "A foreign body, a shell that catches, or a socket at another height. Where no seat was "
+        "felt also forces that are too small: a sensor with another unit or scale."
+    )
+    remedy = (
+        "Put the module into quarantine; inspect socket and shell. Compare the greatest force in "
+        "the detail with that of other plugs."
+    )
 
 
 class PlugOverForce(PluggingError):
@@ -142,7 +148,10 @@ class PlugBentPin(PluggingError):
     number = 574
     text = "A contact met the socket's face"
     cause = "A pin that is bent; the detail names the contact that the moment points at."
-    remedy = "Put the module into quarantine; inspect the contact in the detail."
+    remedy = (
+        "Put the module into quarantine; inspect the contact in the detail, of the socket and, with"
+        " the same name, of the plug."
+    )
 
 
 class InsertionCurveInvalid(PluggingError):
@@ -152,7 +161,7 @@ class InsertionCurveInvalid(PluggingError):
     text = "Insertion curve cannot be judged"
     cause = (
         "Missing columns, text where numbers belong, time that runs back, too few samples, or "
-        "numbers that no insertion can have in their unit."
+        "numbers that no insertion can have in their unit, sign or axes."
     )
     remedy = "See the line or column in the detail; the columns are in docs/plugging.md."
 

@@ -7,17 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellctl.force.contact.recorded_units import (
-    impossible_depths,
-    impossible_forces,
-    impossible_sampling,
-    impossible_speed,
-)
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 
 COLUMNS = ("t_s", "z_mm", "fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
-_TIME, _DEPTH, _FORCES = COLUMNS[0], COLUMNS[1], COLUMNS[2:5]
 _FEWEST = 20
 
 
@@ -87,7 +80,7 @@ def parse_curve(text: str) -> InsertionCurve:
     try:
         missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
         if missing:
-            raise InsertionCurveInvalid(f"missing column {', '.join(missing)}")
+            raise InsertionCurveInvalid(f"missing column {', '.join(missing)}{_separated(text)}")
         rows = [_numbers(row, reader.line_num) for row in reader]
     except csv.Error as error:
         raise InsertionCurveInvalid(f"line {reader.line_num}: {error}") from error
@@ -100,21 +93,6 @@ def parse_curve(text: str) -> InsertionCurve:
     return InsertionCurve(table[:, 0], table[:, 1] * MM, table[:, 2:5], table[:, 5:8])
 
 
-def require_possible_units(curve: InsertionCurve, seat_m: float, most_n: float) -> None:
-    """Raise ``InsertionCurveInvalid`` for numbers that no plugging can have in these units.
-
-    ``seat_m`` is the depth of the seat, ``most_n`` the greatest axial force of a good plugging.
-    """
-    for why in (
-        impossible_sampling(curve.t_s, _TIME),
-        impossible_depths(curve.depth_m, seat_m, _DEPTH),
-        impossible_speed(curve.t_s, curve.depth_m, _TIME),
-        impossible_forces(curve.force_n, most_n, _FORCES),
-    ):
-        if why is not None:
-            raise InsertionCurveInvalid(why)
-
-
 def curve_text(curve: InsertionCurve) -> str:
     """The CSV file of a curve, which ``parse_curve`` reads; time from the first sample on."""
     out = io.StringIO()
@@ -125,6 +103,18 @@ def curve_text(curve: InsertionCurve) -> str:
         numbers = (sample.t_s - begin_s, sample.depth_m / MM, *sample.force_n, *sample.moment_n_m)
         writer.writerow([f"{number:.6f}" for number in numbers])
     return out.getvalue()
+
+
+def _separated(text: str) -> str:
+    """What to say of a head without commas."""
+    head = text.partition("\n")[0]
+    for sign, name in ((";", "semicolons"), ("\t", "tabs")):
+        if sign in head and "," not in head:
+            return (
+                f": the columns are separated by {name}; expected commas between them, and points "
+                "in the numbers"
+            )
+    return ""
 
 
 def _numbers(row: dict[str, str | None], line: int) -> list[float]:

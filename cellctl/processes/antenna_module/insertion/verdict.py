@@ -3,13 +3,14 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from math import isfinite, nan
 from typing import Any
 
 import numpy as np
 
 from cellctl.calibration.checks import Checks, LimitCheck
 from cellctl.geometry.pose import MM
-from cellctl.processes.antenna_module.connector.connector import Connector
+from cellctl.processes.antenna_module.connector.connector import Connector, Kind
 from cellctl.processes.antenna_module.faults.plugging import (
     PlugBentPin,
     PlugEarlyContact,
@@ -61,15 +62,23 @@ class InsertionJudgement:
     checks: Checks
     suspect: str | None
     """The contact that the moment points at; None when nothing points at one."""
+    of_drawing: str
+    """Whose contact that is. Plug and socket mirror each other: by the other's drawing the moment
+    points at the other end of the row."""
+    unfelt_seat: str | None = None
+    """Why no seat was felt; None when one was."""
 
     @property
     def fault(self) -> PluggingError | None:
         """The numbered fault; None for a plug that is seated."""
         if self.verdict is InsertionVerdict.SEATED:
             return None
-        words = "; ".join(str(check) for check in self.checks if not check.passed)
-        where = f"; contact {self.suspect}" if self.suspect is not None else ""
-        return _FAULTS[self.verdict](f"{words}{where}")
+        words = [str(check) for check in self.checks if not check.passed]
+        if self.unfelt_seat is not None:
+            words.append(self.unfelt_seat)
+        if self.suspect is not None:
+            words.append(f"contact {self.suspect} of the {self.of_drawing}, by moments in its axes")
+        return _FAULTS[self.verdict]("; ".join(words))
 
     def to_record(self) -> dict[str, Any]:
         """Plain data."""
@@ -78,8 +87,9 @@ class InsertionJudgement:
             "verdict": self.verdict.value,
             "fault": None if fault is None else fault.number,
             "features": self.features.to_record(),
-            "limits": [check.to_record() for check in self.checks],
+            "limits": [_plain(check) for check in self.checks],
             "suspected_contact": self.suspect,
+            "axes": self.of_drawing,
         }
 
 
@@ -98,10 +108,16 @@ def judge_insertion(
     suspect = _suspect(features, connector) if _EARLY in failed else None
     verdict = _verdict(failed, points_at_one=suspect is not None)
     return InsertionJudgement(
-        verdict, features, checks, suspect if verdict is InsertionVerdict.BENT_PIN else None
+        verdict,
+        features,
+        checks,
+        suspect if verdict is InsertionVerdict.BENT_PIN else None,
+        f"{_SIDES[connector.kind]} {connector.name}",
+        _unfelt_seat(features, limits) if features.seat_depth_m is None else None,
     )
 
 
+_SIDES: Mapping[Kind, str] = {"pins": "plug", "holes": "socket"}
 _EARLY, _EARLY_SIDE = "axial force before the springs", "side force before the springs"
 _SIDE, _MOMENT, _PRESSURE = "side force", "moment about z", "centre of pressure"
 _OVER, _SEAT = "axial force", "distance from the seat's depth"
@@ -109,7 +125,7 @@ _OVER, _SEAT = "axial force", "distance from the seat's depth"
 
 def _checks(features: InsertionFeatures, limits: InsertionLimits) -> Checks:
     seat = features.seat_depth_m
-    off_m = float("inf") if seat is None else abs(seat - limits.seat_depth_m)
+    off_m = nan if seat is None else abs(seat - limits.seat_depth_m)
     return (
         LimitCheck(_EARLY, features.early_axial_n, limits.entry_axial_n, "N"),
         LimitCheck(_EARLY_SIDE, features.early_side_n, limits.entry_side_n, "N"),
@@ -117,9 +133,21 @@ def _checks(features: InsertionFeatures, limits: InsertionLimits) -> Checks:
         LimitCheck(_MOMENT, features.moment_z_n_m, limits.moment_z_n_m, "N·m"),
         LimitCheck(_PRESSURE, features.pressure_m / MM, features.pressure_limit_m / MM, "mm"),
         LimitCheck(_OVER, features.total_n, limits.greatest_n + limits.over_n, "N"),
-        # Without a seat there is no distance; 10 mm is farther than any connector is deep.
-        LimitCheck(_SEAT, min(off_m / MM, 10.0), limits.seat_tolerance_m / MM, "mm"),
+        LimitCheck(_SEAT, off_m / MM, limits.seat_tolerance_m / MM, "mm"),
     )
+
+
+def _unfelt_seat(features: InsertionFeatures, limits: InsertionLimits) -> str:
+    return (
+        f"no seat was felt: nowhere behind the springs did the force rise by "
+        f"{limits.seat_rise_n:g} N within {limits.seat_within_m / MM:g} mm; greatest force "
+        f"{features.total_n:.3g} N, deepest point {features.depth_m / MM:.4g} mm"
+    )
+
+
+def _plain(check: LimitCheck) -> dict[str, Any]:
+    """JSON has no number for what was not measured."""
+    return check.to_record() | {"value": check.value if isfinite(check.value) else None}
 
 
 def _verdict(failed: set[str], *, points_at_one: bool) -> InsertionVerdict:

@@ -136,9 +136,11 @@ def _insertion(record: RunRecord, read: ReadArtefact) -> Iterator[ReportBlock]:
             "Force on the plug in the axes of the socket; level lines: allowed.",
         )
     if document:
-        suspect = document.get("suspected_contact") or "none"
+        suspect = document.get("suspected_contact")
+        whose = f" of the {document['axes']}" if "axes" in document else ""
+        words = "none" if suspect is None else f"{suspect}{whose}"
         yield Heading("Verdict", str(document["verdict"]))
-        yield FactList((("suspected contact", str(suspect)),))
+        yield FactList((("suspected contact", words),))
         yield from _judged(document.get("limits", ()))
 
 

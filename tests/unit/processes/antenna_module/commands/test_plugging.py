@@ -21,6 +21,7 @@ from cellctl.processes.antenna_module.faults.calibration import (
     TooFewTeachings,
     TurnInvalid,
 )
+from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.faults.plugging import (
     CalibrationsDoNotBelongTogether,
     InsertionCurveInvalid,
@@ -32,6 +33,7 @@ from tests.rigs.antenna.curves import Shape, as_csv, curve
 from tests.rigs.antenna.plugging_files import Json, cell_entries, look_entries, mm, teach_content
 
 DRAWING = "config/connectors/micro-d-15-pins.toml"
+SOCKET = "config/connectors/micro-d-15-holes.toml"
 
 
 def application() -> typer.Typer:
@@ -272,10 +274,21 @@ def test_an_insertion_is_judged_from_a_file(
     out = tmp_path / "verdict.json"
     result = run(
         "judge-insertion",
-        "--curve", str(tmp_path / "c.csv"), "--connector", DRAWING, "--out", str(out),
+        "--curve", str(tmp_path / "c.csv"), "--connector", SOCKET, "--out", str(out),
     )  # fmt: skip
     assert result.exit_code == code, result.exception
     assert json.loads(out.read_text())["verdict"] == verdict
+
+
+def test_the_plugs_drawing_does_not_name_the_contact_at_the_other_end(tmp_path: Path) -> None:
+    path = tmp_path / "c.csv"
+    path.write_text(as_csv(curve(Shape(pin_n_per_mm=115, pin_mm=(-4.4, 0.5)))))
+    judged = run("judge-insertion", "--curve", str(path), "--connector", SOCKET)
+    assert "contact 8 of the socket micro-d-15, by moments in its axes" in judged.output
+    refused = run("judge-insertion", "--curve", str(path), "--connector", DRAWING)
+    assert isinstance(refused.exception, ConnectorFileInvalid)
+    assert "micro-d-15 has pins, not holes; give the socket's drawing" in str(refused.exception)
+    assert "contact" not in refused.output
 
 
 @pytest.mark.parametrize(
@@ -288,6 +301,7 @@ def test_an_insertion_is_judged_from_a_file(
         ("z_mm", 1e3, "z_mm reaches 25"),
         ("f", 1e-3, "fx_n, fy_n, fz_n: at most 0.0"),
         ("f", 1e3, "fx_n, fy_n, fz_n: up to"),
+        ("m", 1e3, "mx_n_m, my_n_m: the force would act"),
     ],
 )
 def test_numbers_in_another_unit_are_refused_with_their_column(
@@ -300,12 +314,27 @@ def test_numbers_in_another_unit_are_refused_with_their_column(
     rows = [",".join(f"{one:.9g}" for one in row) for row in table]
     path = tmp_path / "c.csv"
     path.write_text("\n".join([lines[0], *rows]))
-    result = run("judge-insertion", "--curve", str(path), "--connector", DRAWING)
+    result = run("judge-insertion", "--curve", str(path), "--connector", SOCKET)
     assert isinstance(result.exception, InsertionCurveInvalid)
     assert f"{path}: {said}" in str(result.exception)
     assert "another unit, such as" in str(result.exception)
 
 
+@pytest.mark.parametrize(
+    ("encoding", "said"),
+    [("utf-8-sig", None), ("utf-16", "not UTF-8 (byte 1); save it as CSV in UTF-8")],
+)
+def test_an_encoding_is_read_or_named(tmp_path: Path, encoding: str, said: str | None) -> None:
+    path = tmp_path / "c.csv"
+    path.write_text(as_csv(curve()), encoding=encoding)
+    result = run("judge-insertion", "--curve", str(path), "--connector", SOCKET)
+    if said is None:
+        assert result.exit_code == 0, result.exception
+    else:
+        assert isinstance(result.exception, InsertionCurveInvalid)
+        assert said in str(result.exception)
+
+
 def test_a_curve_that_cannot_be_read_is_refused(tmp_path: Path) -> None:
-    result = run("judge-insertion", "--curve", str(tmp_path / "no.csv"), "--connector", DRAWING)
+    result = run("judge-insertion", "--curve", str(tmp_path / "no.csv"), "--connector", SOCKET)
     assert isinstance(result.exception, InsertionCurveInvalid)

@@ -24,7 +24,9 @@ def test_a_file_is_read_back() -> None:
     ("text", "word"),
     [
         ("", "missing column"),
-        (TEXT.replace("fz_n", "fz"), "missing column fz_n"),
+        (TEXT.replace("fz_n", "fz"), "missing column fz_n$"),
+        (TEXT.replace(",", ";"), "missing column t_s.* separated by semicolons; expected commas"),
+        (TEXT.replace(",", "\t"), "missing column t_s.* separated by tabs; expected commas"),
         ("\n".join(LINES[:10]), "9 samples"),
         ("\n".join([*LINES[:30], "1,2,3,x,5,6,7,8", *LINES[31:]]), "line 31: fy_n is 'x'"),
         ("\n".join([*LINES[:30], "1,2,3", *LINES[31:]]), "line 31: fy_n"),

@@ -1,5 +1,6 @@
 """Each fault has its verdict, and good insertions of all lots have none."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict,
 from cellctl.processes.antenna_module.insertion.watch import InsertionWatch, TripCause
 from tests.rigs.antenna.curves import Shape, curve
 
-CONNECTOR = read_connector(Path("config/connectors/micro-d-15-pins.toml"))
+CONNECTOR = read_connector(Path("config/connectors/micro-d-15-holes.toml"))
 LIMITS = InsertionLimits.of(CONNECTOR)
 GOOD = Shape()
 FAULTS = [
@@ -62,7 +63,32 @@ def test_the_moment_points_at_the_bent_contact() -> None:
             continue
         x_mm, y_mm = position_m * 1e3
         shape = Shape(pin_n_per_mm=115, pin_mm=(float(x_mm), float(y_mm)), noise_n_m=5e-4)
-        assert judge_insertion(curve(shape), CONNECTOR).suspect == name
+        judgement = judge_insertion(curve(shape), CONNECTOR)
+        assert judgement.suspect == name
+        assert f"contact {name} of the socket micro-d-15, by moments" in str(judgement.fault)
+        assert judgement.to_record()["axes"] == "socket micro-d-15"
+
+
+def test_a_seat_that_was_not_felt_is_not_measured() -> None:
+    good = curve()
+    judgement = judge_insertion(replace(good, force_n=good.force_n / 4.448), CONNECTOR)
+    assert judgement.verdict is InsertionVerdict.SHORT
+    assert judgement.features.seat_depth_m is None
+    words = str(judgement.fault)
+    assert "distance from the seat's depth not measured (≤ 0.15 mm)" in words
+    assert "no seat was felt" in words
+    assert "greatest force 8.05 N, deepest point 2.566 mm" in words
+    assert "another unit" in PlugShortSeat.cause
+    (seat,) = (
+        limit
+        for limit in judgement.to_record()["limits"]
+        if limit["name"] == "distance from the seat's depth"
+    )
+    assert seat["value"] is None
+    assert not seat["passed"]
+    assert json.loads(json.dumps(judgement.to_record(), allow_nan=False))
+    felt = judge_insertion(curve(Shape(seat_mm=2.2)), CONNECTOR)
+    assert "no seat" not in str(felt.fault)
 
 
 def test_a_missing_contact_is_not_seen_and_that_is_stated() -> None:

@@ -29,6 +29,7 @@ PLAN = {
 VERDICT = {
     "verdict": "bent_pin",
     "suspected_contact": "11",
+    "axes": "socket micro-d-15",
     "bounds": [[-1.0, 0.5, 3.0]],
     "limits": [
         {
@@ -78,6 +79,7 @@ def test_connectors_plan_and_insertion(store: RunStore, tmp_path: Path) -> None:
     text = " ".join(text_of(report).split())
     for words in (
         "35 µm",
+        "11 of the socket micro-d-15",
         "at most 50 µm",
         "2.35 to 2.65 mm",
         "at least 3 N",
