@@ -11,6 +11,7 @@ from cellctl.cli.commands import whole_app
 from cellctl.config import problems_before_commissioning
 from cellctl.config.commissioning import examine_before_commissioning
 from tests.unit.config.between_arms import BETWEEN_ARMS
+from tests.unit.config.fresh_eyes import FRESH_EYES, FRESH_EYES_PASSES
 from tests.unit.config.mistake import Mistake, Undecided
 from tests.unit.config.mistakes import MISTAKES
 from tests.unit.config.passed_before import PASSED_BEFORE, PASSES_WITH_REMARK
@@ -50,7 +51,7 @@ SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
 ALL = (
     *(MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS),
-    *(TOUCHING_CELLS + PASSED_BEFORE),
+    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES),
 )
 
 
@@ -86,7 +87,9 @@ def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) 
 
 
 @pytest.mark.parametrize(
-    "case", UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK, ids=lambda one: one.reason
+    "case",
+    UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK + FRESH_EYES_PASSES,
+    ids=lambda one: one.reason,
 )
 def test_what_nobody_can_decide_passes_with_a_remark_where_there_is_one(
     tmp_path: Path, case: Undecided

@@ -1,7 +1,10 @@
 """Holds limits of a recipe against its drawings, and the drawings against each other."""
 
 from collections.abc import Iterator
+from math import atan2, degrees
 from pathlib import Path
+
+import numpy as np
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound, bound_issues
@@ -21,6 +24,12 @@ _MOST_PER_CONTACT_N = 7.0
 take 2.78 N a contact."""
 _SIGMAS = 20.0
 """A force that is compared with thresholds of a few standard deviations lies well above them."""
+_OPEN_SHARE = 0.25
+"""Of the way from the first touch of the springs to the seat, which a module that is called good may
+lack: its pins are then past what the springs open over, and the vibration of a flight, some tenths
+of a millimetre, does not reach their ends. For a micro-D 0.5 mm, twice what the defaults take."""
+_MASS_RATIO = 0.2
+"""Modules of one drawing differ by a few percent: solder, screws, a label."""
 
 
 def contact_bounds(recipe: AntennaRecipe, key: str, socket: Connector) -> Iterator[Bound]:
@@ -29,6 +38,62 @@ def contact_bounds(recipe: AntennaRecipe, key: str, socket: Connector) -> Iterat
     why = "capture_mm of the socket's drawing: farther off a pin meets the face beside its hole"
     for name in ("worst_contact_mm", "seated_limit_mm"):
         yield Bound(f"{key}.{name}", float(getattr(recipe, name)), why, most=capture_mm)
+    farthest_mm = float(np.linalg.norm(socket.positions_m, axis=1).max()) / MM
+    why = (
+        f"more moves the contact that is {farthest_mm:.2f} mm from the middle by more than "
+        f"capture_mm of the socket's drawing, {capture_mm:g}"
+    )
+    most_deg = degrees(atan2(capture_mm, farthest_mm))
+    yield Bound(f"{key}.seated_limit_deg", recipe.seated_limit_deg, why, most=most_deg)
+
+
+def holding_bounds(recipe: AntennaRecipe, key: str, socket: Connector) -> Iterator[Bound]:
+    """How far a plug may be from its drawn seat, and how hard it may be pulled, and still hold."""
+    insertion, way_mm = recipe.insertion, _way_mm(socket)
+    open_mm = _OPEN_SHARE * way_mm
+    why = (
+        f"{_OPEN_SHARE:g} of the {way_mm:g} mm from spring_depth_mm to seat_depth_mm of the "
+        "socket's drawing is what a plug that holds may lack"
+    )
+    yield Bound(
+        f"{key}.insertion.seat_tolerance_mm", insertion.seat_tolerance_mm, why, most=open_mm
+    )
+    yield Bound(f"{key}.gap_limit_mm", recipe.gap_limit_mm, why, most=open_mm)
+    # A module may have been short of its seat by the one and have come up by the other.
+    why = f"{why}, seat_tolerance_mm of the insertion included"
+    left_mm = open_mm - insertion.seat_tolerance_mm
+    yield Bound(f"{key}.gap_limit_mm", recipe.gap_limit_mm, why, most=left_mm)
+    why = (
+        "the least force_n of the socket's drawing: a plug that goes in with so little is held by "
+        "no more, and a pull beyond it draws good modules out"
+    )
+    yield Bound(f"{key}.insertion.pull_n", insertion.pull_n, why, most=socket.force_n[0])
+
+
+def holding_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
+    """A pull that may take the plug along, and a weighing that takes another module for this."""
+    travel_mm = recipe.insertion.pull_travel_mm
+    open_mm = _OPEN_SHARE * _way_mm(read_drawings(recipe, folder).socket)
+    if travel_mm > open_mm:
+        said = (
+            f"a plug that comes along with the arm is drawn farther than the {open_mm:g} mm by "
+            "which one that holds may be short of its seat; right if arm and fingers give way so "
+            "far"
+        )
+        yield ConfigIssue(f"{key}.insertion.pull_travel_mm", f"{travel_mm:g}", said)
+    ratio = recipe.mass_tolerance_ratio
+    if ratio > _MASS_RATIO:
+        said = (
+            f"modules of {recipe.module_mass_kg * (1 - ratio):.3g} to "
+            f"{recipe.module_mass_kg * (1 + ratio):.3g} kg pass for this one, whose like differ by "
+            "a few percent; right if hoses or cables pull at it while it is weighed"
+        )
+        yield ConfigIssue(f"{key}.mass_tolerance_ratio", f"{ratio:g}", said)
+
+
+def _way_mm(socket: Connector) -> float:
+    """How far a pin goes from where the springs begin to its seat."""
+    return (socket.seat_depth_m - socket.spring_depth_m) / MM
 
 
 def one_file_twice(

@@ -18,6 +18,7 @@ from cellctl.processes.antenna_module.checks.above import above_issues
 from cellctl.processes.antenna_module.checks.drawn import (
     contact_bounds,
     force_issues,
+    holding_bounds,
     one_file_twice,
     pull_issues,
 )
@@ -71,6 +72,7 @@ def _bounds(
     known, settings = cast(AntennaRecipe, recipe), _settings(cell, recipe)
     where = f"processes.{recipe.process}"
     yield from contact_bounds(known, key, socket)
+    yield from holding_bounds(known, key, socket)
     yield from arm_bounds(cell, known.device(ARM), settings, where)
     yield from sensor_bounds(cell, known.device(FORCE), known.flange_T_plug)
     yield from board_bounds(settings, where, stored)
