@@ -16,6 +16,7 @@ from cellctl.config.checks.cross_checks import unpermitted
 from cellctl.config.checks.plausible.findings import plausibility_issues
 from cellctl.config.checks.plausible.mounted import mounted_remarks
 from cellctl.config.checks.plausible.resting import resting_issues
+from cellctl.config.checks.plausible.sensors import sensor_remarks
 from cellctl.config.checks.remarks import cell_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import bad_devices, examine, placed, unless_named
@@ -93,6 +94,7 @@ def _implausible_recipe(
 def _remarks(cell: CellConfig, path: Path, needs: Iterable[ArmNeeds]) -> Iterator[ConfigIssue]:
     yield from cell_remarks(cell)
     yield from mounted_remarks(cell)
+    yield from sensor_remarks(cell)
     yield from table_remarks(cell)
     yield from box_remarks(cell, needs)
     for index, recipe in enumerate(cell.recipes):

@@ -1,5 +1,6 @@
 """What drivers say about their settings and abilities, before a connection."""
 
+from collections.abc import Mapping
 from typing import Any, cast
 
 from pydantic import BaseModel
@@ -16,6 +17,7 @@ from cellctl.errors.config import UnknownDriver
 from cellctl.geometry.pose import MM
 from cellctl.interfaces import DigitalIo, IoNames, MotionBounds, Robot
 from cellctl.interfaces.exposure import AdjustableExposure
+from cellctl.interfaces.ft_sensor import FtSensor
 
 
 def checked_settings(group: str, device: DeviceConfig) -> BaseModel:
@@ -85,6 +87,12 @@ def sensor_rate_hz(sensor: ForceSensorConfig) -> float:
     driver = plugins.load(plugins.FT_SENSOR, sensor.driver)
     settings = driver.Config.model_validate(sensor.settings)  # type: ignore[attr-defined]
     return float(settings.rate_hz)
+
+
+def sensor_remarks_of(sensor: ForceSensorConfig) -> Mapping[str, str]:
+    """What the driver of a sensor says of its settings, by their keys."""
+    driver: Any = plugins.load(plugins.FT_SENSOR, sensor.driver)
+    return cast(type[FtSensor], driver).remarks(driver.Config.model_validate(sensor.settings))
 
 
 LEAST_RATE_HZ = 100.0

@@ -5,8 +5,9 @@ its own without an event loop, because nothing else may delay a stop.
 """
 
 from abc import abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cellctl.interfaces.device import BlockingDevice
 
@@ -57,6 +58,12 @@ class FtSensor(BlockingDevice):
 
     Methods may raise ``ConnectTimeout``, ``LinkLost``, ``ReplyTimeout``, ``ProtocolViolation``.
     """
+
+    @classmethod
+    def remarks(cls, config: Any) -> Mapping[str, str]:  # noqa: ARG003
+        """What `cellctl check` says of settings that are possible and should be looked at again, by
+        their keys; ``config`` is a ``Config`` of the driver."""
+        return {}
 
     @abstractmethod
     def open(self) -> None:

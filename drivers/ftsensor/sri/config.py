@@ -17,6 +17,22 @@ _BITS_PER_BYTE = 10
 """On the serial line: a start bit, eight data bits, a stop bit."""
 
 
+_CONVERTED = {
+    "C": (
+        "converter counts: newtons are made of them by gain, zero, excitation and matrix as the "
+        "box states them"
+    ),
+    "M": (
+        "bridge signals: newtons are made of them by the matrix that the box states, and that they "
+        "are the input of this matrix no device has proven yet"
+    ),
+}
+_WEIGH = (
+    'the limits of guard and recipes are newtons, which "E" has from the box itself; right if a '
+    "known weight, hung on the sensor, reads as what it weighs"
+)
+
+
 class SriConfig(BaseModel):
     """One sensor with its box."""
 
@@ -46,7 +62,9 @@ class SriConfig(BaseModel):
     rate_tolerance: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
     """Relative deviation of the measured rate beyond which a window is counted."""
     unit: Unit = "E"
-    """Unit of the samples: E newtons, C converter counts, M bridge signals."""
+    """What the box sends: E newtons, C converter counts, M bridge signals. The driver makes newtons
+    and newton metres of C and M by the box's own matrix (of C also by its gain, zero and
+    excitation), so that every limit is in newtons whatever stands here."""
     points: Annotated[int, Field(ge=1, le=80)] = 1
     """Samples in a frame of the stream."""
     filter_weights: Annotated[tuple[Annotated[int, Field(ge=0)], ...], Field(max_length=16)] = (1,)
@@ -74,6 +92,11 @@ class SriConfig(BaseModel):
     max_lag_s: Positive = 0.3
     """Samples that arrive later than this after they were taken end the connection. Seen where a
     stream starts late, or goes on late after a pause; a sample carries no time of its own."""
+
+    @property
+    def remarks(self) -> dict[str, str]:
+        """What is possible and should be looked at again, by its key."""
+        return {"unit": f"{_CONVERTED[self.unit]}; {_WEIGH}"} if self.unit in _CONVERTED else {}
 
     @property
     def layout(self) -> FrameLayout:

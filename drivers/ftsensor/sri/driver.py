@@ -1,5 +1,7 @@
 """SRI six-axis sensor behind an M8128-family box, over TCP, serial or CAN (README.md)."""
 
+from collections.abc import Mapping
+
 from cellctl.clock import now_s
 from cellctl.errors.link import LinkError, LinkLost
 from cellctl.interfaces.ft_sensor import FtHealth, FtSensor, WrenchSample
@@ -17,6 +19,11 @@ class SriSensor(FtSensor):
     """Reconnects by itself for reading; ``read`` is empty until the start-up has run again."""
 
     Config = SriConfig
+
+    @classmethod
+    def remarks(cls, config: SriConfig) -> Mapping[str, str]:
+        """Samples of which this PC makes newtons."""
+        return config.remarks
 
     def __init__(self, config: SriConfig) -> None:
         self._config = config

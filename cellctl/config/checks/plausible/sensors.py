@@ -5,7 +5,12 @@ from collections.abc import Iterator, Set
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import ForceSensorConfig
-from cellctl.config.driver_settings import LEAST_RATE_HZ, measuring_range, sensor_rate_hz
+from cellctl.config.driver_settings import (
+    LEAST_RATE_HZ,
+    measuring_range,
+    sensor_rate_hz,
+    sensor_remarks_of,
+)
 from cellctl.config.issue import ConfigIssue
 
 _MOST_OVER_OTHERS = 5.0
@@ -73,3 +78,11 @@ def _range(path: str, sensor: ForceSensorConfig) -> Iterator[ConfigIssue]:
             "were the moments in N·mm?"
         )
         yield ConfigIssue(f"{path}.settings.range", str(measuring), allowed)
+
+
+def sensor_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Settings that the driver of a sensor wants to be looked at again."""
+    for name, sensor in cell.force_sensors.items():
+        for key, said in sensor_remarks_of(sensor).items():
+            value = repr(sensor.settings.get(key))
+            yield ConfigIssue(f"force_sensors.{name}.settings.{key}", value, said)

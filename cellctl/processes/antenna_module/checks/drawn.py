@@ -25,9 +25,9 @@ take 2.78 N a contact."""
 _SIGMAS = 20.0
 """A force that is compared with thresholds of a few standard deviations lies well above them."""
 _OPEN_SHARE = 0.25
-"""Of the way from the first touch of the springs to the seat, which a module that is called good may
-lack: its pins are then past what the springs open over, and the vibration of a flight, some tenths
-of a millimetre, does not reach their ends. For a micro-D 0.5 mm, twice what the defaults take."""
+"""Of the way from the first touch of the springs to the seat, which a module that is called good
+may lack: three quarters of it are left to hold. For a micro-D 0.5 mm, twice what the defaults take.
+"""
 _MASS_RATIO = 0.2
 """Modules of one drawing differ by a few percent: solder, screws, a label."""
 
