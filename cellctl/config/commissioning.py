@@ -20,7 +20,7 @@ from cellctl.config.checks.plausible.sensors import sensor_remarks
 from cellctl.config.checks.remarks import cell_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.load import bad_devices, examine, placed, unless_named
-from cellctl.config.model_file import stated_bases
+from cellctl.config.model_file import StatedModel, model_path, stated_bases, stated_model
 from cellctl.config.process_definition import process_definition
 from cellctl.config.recipe import Recipe
 
@@ -88,7 +88,16 @@ def _implausible_recipe(
     found = list(definition.check_plausible(cell, recipe, key, path.parent))
     if found:
         return found  # a pose that is wrong itself would be named again, as one that sees nothing
-    return list(definition.check_placed(cell, recipe, key, path.parent, stated_bases(path)))
+    model = stated_model(model_path(path))
+    placed_otherwise = list(definition.check_placed(cell, recipe, key, path.parent, model.bases))
+    return placed_otherwise or list(definition.check_model(cell, recipe, key, model))
+
+
+def model_issues(cell: CellConfig, model: StatedModel) -> Iterator[ConfigIssue]:
+    """Bodies of a model that contradict a recipe of a cell file that was checked."""
+    for index, recipe in enumerate(cell.recipes):
+        definition = process_definition(recipe.process)
+        yield from definition.check_model(cell, recipe, f"recipes.{index}", model)
 
 
 def _remarks(cell: CellConfig, path: Path, needs: Iterable[ArmNeeds]) -> Iterator[ConfigIssue]:

@@ -9,6 +9,7 @@ from cellctl import plugins
 from cellctl.config.base import Section
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.model_file import StatedModel
 from cellctl.config.recipe import Recipe
 from cellctl.config.roles import Role
 from cellctl.config.stated.moves import StatedMove
@@ -76,6 +77,21 @@ class ProcessDefinition(ABC):
 
         ``bases`` holds ``cell_T_base`` in its written form by robot, as the model of the cell has
         it; empty where there is no model. Asked after ``check_plausible`` has found nothing.
+        """
+        return ()
+
+    @classmethod
+    def check_model(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,  # noqa: ARG003
+        key: str,  # noqa: ARG003
+        model: StatedModel,  # noqa: ARG003
+    ) -> Iterable[ConfigIssue]:
+        """Bodies of the model that contradict a recipe, so that planning would answer for another
+        cell; by default nothing.
+
+        Asked by ``cellctl check`` after ``check_placed`` has found nothing, and by planning.
         """
         return ()
 

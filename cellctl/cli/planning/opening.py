@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from cellctl.config import load_cell
-from cellctl.config.model_file import model_path
-from cellctl.errors.config import PlanningNotInstalled
+from cellctl.config.commissioning import model_issues
+from cellctl.config.model_file import model_path, stated_model
+from cellctl.errors.config import ConfigInvalid, PlanningNotInstalled
 
 if TYPE_CHECKING:
     from cellctl.planning.scene.cell_scene import CellScene
@@ -24,4 +25,9 @@ def open_scene(cell_file: Path, model: Path | None) -> "CellScene":
         from cellctl.planning.model.read import read_model
     except ImportError as error:
         raise PlanningNotInstalled(str(error)) from error
-    return read_model(load_cell(cell_file), model or model_path(cell_file), cell_file.parent)
+    cell, path = load_cell(cell_file), model or model_path(cell_file)
+    scene = read_model(cell, path, cell_file.parent)
+    found = [str(issue) for issue in model_issues(cell, stated_model(path))]
+    if found:
+        raise ConfigInvalid(f"{path}: {'; '.join(found)}")
+    return scene

@@ -38,6 +38,12 @@ _FARTHEST_M = 5.0
 """No body of an arm lies farther from the frame of its link."""
 _SMALLEST_M = 5e-3
 """Nothing that an arm may hit is smaller than this in its greatest dimension."""
+_THINNEST_MM = 1.0
+_SLENDER = 100.0
+"""A capsule that is thinner and so many times as long as its radius is a link in metres:
+of real ones the radius is half a metre at most, and neither hoses nor needles are so thin."""
+_FLATTEST_MM = 0.5
+"""No sheet or pane is thinner; a body of half a metre, written in metres, is."""
 _BASES_APART_M = 0.05
 """No two arms stand nearer to each other, base to base."""
 
@@ -139,6 +145,7 @@ def _solid(name: str, keys: BodyKeys, arm: str | None, margin_m: float, folder: 
             f"{name}: {2000 * shape.radius_m:.2g} mm at its greatest, "
             f"expected at least {_SMALLEST_M / MM:g} mm; lengths are in mm"
         )
+    _check_thickness(name, keys)
     # Fixtures may be anywhere in the hall; a part of an arm that lies metres from its link was
     # written in another unit.
     reach_m = float(np.linalg.norm(pose[:3, 3])) + shape.radius_m
@@ -148,6 +155,23 @@ def _solid(name: str, keys: BodyKeys, arm: str | None, margin_m: float, folder: 
             f"expected at most {_FARTHEST_M:g} m"
         )
     return solid
+
+
+def _check_thickness(name: str, keys: BodyKeys) -> None:
+    """One figure in metres among others in mm, as a radius beside a length."""
+    if keys.capsule is not None:
+        radius_mm = keys.capsule.radius_mm
+        length_mm = math.dist(keys.capsule.from_mm, keys.capsule.to_mm)
+        if radius_mm < _THINNEST_MM and length_mm > _SLENDER * radius_mm:
+            raise SizeImplausible(
+                f"{name}: radius_mm = {radius_mm:g} with a length of {length_mm:g} mm, expected at "
+                f"least {_THINNEST_MM:g} mm; lengths are in mm"
+            )
+    if keys.box is not None and min(keys.box.size_mm) < _FLATTEST_MM:
+        raise SizeImplausible(
+            f"{name}: {min(keys.box.size_mm):g} mm in size_mm, expected at least "
+            f"{_FLATTEST_MM:g} mm; lengths are in mm"
+        )
 
 
 def _shape(keys: BodyKeys, folder: Path) -> tuple[Shape, Array]:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.model_file import StatedModel
 from cellctl.config.recipe import Recipe
 from cellctl.config.stated.moves import StatedMove
 from cellctl.errors.calibration import CalibrationError
@@ -103,6 +104,15 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         deck, settings = cast(DeckRecipe, recipe), cell.processes[recipe.process]
         yield from sight_issues(cell, deck, key, folder, bases)
         yield from shared_zone_issues(cell, deck, cast(DeckSettings, settings), bases)
+
+    @classmethod
+    def check_model(
+        cls, cell: CellConfig, recipe: Recipe, key: str, model: StatedModel
+    ) -> Iterable[ConfigIssue]:
+        """Whether the bodies of deck and frame hold the parts of the recipe."""
+        from cellctl.processes.deck_to_frame.checks.modelled_parts import modelled_part_issues
+
+        return modelled_part_issues(cell, cast(DeckRecipe, recipe), key, model)
 
     @classmethod
     def remarks(

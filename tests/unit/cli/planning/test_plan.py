@@ -11,6 +11,7 @@ from cellctl.cli.planning.opening import open_scene
 from cellctl.config import load_cell
 from cellctl.config.stated.moves import StatedMove
 from cellctl.errors.config import (
+    ConfigInvalid,
     ConfigUnreadable,
     HeadNotDescribed,
     NoMovesStated,
@@ -22,6 +23,7 @@ from cellctl.errors.config import (
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.ways import check_moves, check_zones
 from cellctl.planning.ways.check_moves import CheckedMove, stated_moves
+from tests.unit.planning.deck_cell import write_model
 
 DECK = "config/deck.toml"
 
@@ -130,6 +132,12 @@ def test_a_bad_model_leaves_no_file(tmp_path: Path) -> None:
     with pytest.raises(ConfigUnreadable):
         run("paths", DECK, "--model", missing, "--out", str(out))
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_model_of_another_place_of_the_frame_is_refused(tmp_path: Path) -> None:
+    model = write_model(tmp_path, "[1900.0, 0.0, 390.0", "[1900.0, 0.0, 290.0")
+    with pytest.raises(ConfigInvalid, match=r"fixtures\.frame = .* ends 100 mm below it"):
+        run("check", DECK, "--model", str(model))
 
 
 def test_without_the_extra_the_fault_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

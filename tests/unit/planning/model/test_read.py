@@ -78,6 +78,8 @@ def test_a_body_far_from_its_link_is_refused(tmp_path: Path) -> None:
             "from_mm = [0.0, 0.0, 0.35], to_mm = [0.0, 0.0, 0.45], radius_mm = 0.35",
             r"main\.pedestal: 0\.8 mm",
         ),
+        ("radius_mm = 180.0", "radius_mm = 0.18", r"main\.upper_arm: radius_mm = 0\.18 with"),
+        ("[300.0, 160.0, 40.0]", "[300.0, 0.16, 40.0]", r"main\.fixture: 0\.16 mm in size_mm"),
         (
             "cell_T_base = [1900.0, -2300.0, 0.0, 90.0, 0.0, 0.0]",
             "cell_T_base = [1.9, -2.3, 0.0, 90.0, 0.0, 0.0]",
@@ -90,6 +92,13 @@ def test_metres_in_place_of_millimetres_are_refused(
 ) -> None:
     with pytest.raises(SizeImplausible, match=words):
         read_model(CELL, write_model(tmp_path, old, new), DECK.parent)
+
+
+def test_a_thin_needle_that_is_short_is_a_body(tmp_path: Path) -> None:
+    grip = "from_mm = [0.0, 0.0, 100.0], to_mm = [0.0, 0.0, 390.0], radius_mm = 100.0"
+    needle = "from_mm = [0.0, 0.0, 100.0], to_mm = [0.0, 0.0, 130.0], radius_mm = 0.4"
+    scene = read_model(CELL, write_model(tmp_path, grip, needle), DECK.parent)
+    assert "main.gripper" in {solid.name for solid in scene.solids}
 
 
 @pytest.mark.parametrize(
