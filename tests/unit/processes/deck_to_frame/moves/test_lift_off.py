@@ -135,6 +135,15 @@ async def test_a_held_deck_is_not_pulled_the_more_with_every_restart(
     assert bench.cell.main.moves == []
 
 
+async def test_without_a_valid_payload_a_reset_lifts_all_the_same(daemon_rig: DaemonRig) -> None:
+    bench = daemon_rig.bench
+    restarted(bench, -130.0)
+    bench.calibrations.invalidate([PAYLOAD], "another gripper")
+    await daemon_rig.idle()
+    first, _ = bench.cell.guard.limits
+    assert first.filtered[2] == pytest.approx(50.0)
+
+
 async def test_a_zero_that_is_known_counts_and_not_the_payload(bench: Bench) -> None:
     payload = restarted(bench, -130.0)
     guard = bench.cell.guard
