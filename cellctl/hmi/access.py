@@ -4,16 +4,15 @@ import ipaddress
 from dataclasses import dataclass
 from typing import Annotated
 
-from fastapi import Depends, Request
+from fastapi import Depends, Request, Security
 
 from cellctl.api.local_socket.messages import Role
+from cellctl.hmi.answers.document import BEARER, COOKIE, SESSION
 from cellctl.hmi.hosts import host_name
 from cellctl.hmi.people import People
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.sessions import Session, Sessions
 from cellctl.hmi.settings import LOOPBACK, PageSettings
-
-COOKIE = "__Host-cellctl"
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,8 +107,13 @@ def _is_loopback(address: str) -> bool:
         return False
 
 
-def visitor(request: Request) -> Visitor:
+def visitor(
+    request: Request,
+    _session: Annotated[object, Security(SESSION)],
+    _token: Annotated[object, Security(BEARER)],
+) -> Visitor:
     """For the routes: who asks."""
+    # The two schemes tell the document of the API what the gatekeeper looks at, and nothing else.
     gatekeeper: Gatekeeper = request.app.state.parts.gatekeeper
     return gatekeeper.visitor(request)
 

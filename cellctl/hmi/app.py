@@ -10,6 +10,7 @@ from fastapi import FastAPI
 from starlette.types import ASGIApp
 
 from cellctl.hmi.access import Gatekeeper
+from cellctl.hmi.answers.document import DESCRIPTION, TAGS, operation_id, worded
 from cellctl.hmi.archive import ArchiveReader
 from cellctl.hmi.daemon_link import DaemonLink
 from cellctl.hmi.event_stream import Streams
@@ -19,7 +20,20 @@ from cellctl.hmi.notifying.notifier import Notifier
 from cellctl.hmi.people import People
 from cellctl.hmi.problems import RESPONSES, add_handlers
 from cellctl.hmi.rates import RateLimit
-from cellctl.hmi.routes import commands, exports, files, live, metrics, records, session
+from cellctl.hmi.routes import (
+    alarms,
+    calibrations,
+    commands,
+    exports,
+    files,
+    line,
+    live,
+    metrics,
+    procedures,
+    recall,
+    records,
+    session,
+)
 from cellctl.hmi.routes.exports import RunExporter
 from cellctl.hmi.sessions import Sessions
 from cellctl.hmi.settings import LOOPBACK, PageSettings
@@ -47,8 +61,19 @@ class Parts:
     metrics: MetricsKeeper
 
 
+ROUTERS = (
+    session.router, live.router, line.router, metrics.router, commands.router, alarms.router,
+    records.router, recall.router, exports.router, calibrations.router, procedures.router,
+)  # fmt: skip
+
+
 def hmi_app(settings: PageSettings) -> ASGIApp:
-    """The application; it follows the daemon while it is up."""
+    """What is served: the routes, and what every answer has around it."""
+    return Shell(routes(settings), LOOPBACK | frozenset(settings.hosts))
+
+
+def routes(settings: PageSettings) -> FastAPI:
+    """Page and API, which follow the daemon while they are up."""
     hub = Hub()
     notifier = Notifier(hub, settings.notify)
     people, sessions = People(settings.people, settings.tokens), Sessions(settings.idle_s)
@@ -84,7 +109,10 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
     # The pages that FastAPI makes of the API load scripts from elsewhere; its document stays.
     app = FastAPI(
         title="cellctl",
+        description=DESCRIPTION,
         version=software(),
+        openapi_tags=TAGS,
+        generate_unique_id_function=operation_id,
         openapi_url="/api/v1/openapi.json",
         docs_url=None,
         redoc_url=None,
@@ -93,7 +121,8 @@ def hmi_app(settings: PageSettings) -> ASGIApp:
     )
     app.state.parts = parts
     add_handlers(app)
-    for one in (session, live, metrics, commands, records, exports):
-        app.include_router(one.router, prefix="/api/v1")
+    for router in ROUTERS:
+        worded(router.routes)
+        app.include_router(router, prefix="/api/v1")
     app.include_router(files.router)
-    return Shell(app, LOOPBACK | frozenset(settings.hosts))
+    return app

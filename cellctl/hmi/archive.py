@@ -8,6 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, TypeVar
 
+from cellctl.errors.records import StoreUnavailable
 from cellctl.records.entered.gauges import judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
 from cellctl.records.figures import on_pages, verdicts
@@ -18,13 +19,19 @@ from cellctl.records.store import RunStore
 
 T = TypeVar("T")
 READERS = 4
+ANSWER_S = 10.0
+"""A disk that answers within this time is a slow one; after it nobody waits any longer."""
 
 
 class ArchiveReader:
-    """Opens the store for each question, so that a store that is replaced or away is noticed."""
+    """Opens the store for each question, so that a store that is replaced or away is noticed.
 
-    def __init__(self, data_dir: Path) -> None:
+    What asks the store raises ``StoreUnavailable`` when there is no answer within ``answer_s``.
+    """
+
+    def __init__(self, data_dir: Path, *, answer_s: float = ANSWER_S) -> None:
         self.data_dir = data_dir
+        self._answer_s = answer_s
         self._readers = asyncio.Semaphore(READERS)
 
     async def runs(self, wanted: RunFilter, limit: int) -> list[dict[str, Any]]:
@@ -32,7 +39,7 @@ class ArchiveReader:
 
         Raises ``StoreUnavailable``.
         """
-        found = await self._in_thread(lambda: listed_runs(self.data_dir, limit, wanted))
+        found = await self.listed(wanted, limit)
         return [_head(one.head) | {"ended_as": _ended_as(one)} for one in found]
 
     async def run(self, number: int) -> dict[str, Any]:
@@ -63,9 +70,10 @@ class ArchiveReader:
                 "gauges": gauges,
                 "files": [_plain(asdict(one)) for one in record.artefacts],
                 "sealed": record.seal is not None,
+                "as_sealed": store.is_as_sealed(number) if record.seal else None,
             }
 
-        return await self._ask(read)
+        return await self.ask(read)
 
     async def file(self, number: int, name: str) -> tuple[Artefact, bytes] | None:
         """A file of a run, checked against its hash; None when the run has none of this name.
@@ -77,15 +85,20 @@ class ArchiveReader:
             files = [one for one in store.run(number).artefacts if one.name == name]
             return (files[-1], store.artefacts.get(files[-1].sha256)) if files else None
 
-        return await self._ask(read)
+        return await self.ask(read)
 
     async def audit(self, limit: int) -> list[dict[str, Any]]:
         """The newest entries of the audit log, newest first; raises ``StoreUnavailable``."""
-        return await self._ask(
-            lambda store: [_plain(asdict(one)) for one in store.audit_log()[: -limit - 1 : -1]]
-        )
+        found = await self.ask(lambda store: store.newest_audit(limit))
+        return [_plain(asdict(one)) for one in found]
 
-    async def _ask(self, read: Callable[[RunStore], T]) -> T:
+    async def listed(self, wanted: RunFilter, limit: int) -> list[ListedRun]:
+        """The newest of the wanted runs, newest first; raises ``StoreUnavailable``."""
+        return await self._in_thread(lambda: listed_runs(self.data_dir, limit, wanted))
+
+    async def ask(self, read: Callable[[RunStore], T]) -> T:
+        """What ``read`` finds in the store; raises what it raises, and ``StoreUnavailable``."""
+
         def work() -> T:
             # Never created by a reader: an empty store in the place of one that is not mounted
             # would look like a cell that has done nothing.
@@ -95,8 +108,23 @@ class ArchiveReader:
         return await self._in_thread(work)
 
     async def _in_thread(self, work: Callable[[], T]) -> T:
-        async with self._readers:
-            return await asyncio.to_thread(work)
+        try:
+            async with asyncio.timeout(self._answer_s):
+                await self._readers.acquire()
+                reading = asyncio.ensure_future(asyncio.to_thread(work))
+                # A thread that a disk holds is a reader until it comes back: others in its place
+                # would take the threads that signing in needs.
+                reading.add_done_callback(self._ended)
+                return await asyncio.shield(reading)
+        except TimeoutError:
+            where = f"{self.data_dir}: no answer within {self._answer_s:g} s"
+            raise StoreUnavailable(where) from None
+
+    def _ended(self, reading: "asyncio.Future[Any]") -> None:
+        self._readers.release()
+        # Nobody may wait any more for what went wrong.
+        if not reading.cancelled():
+            reading.exception()
 
 
 def _ended_as(run: ListedRun) -> str:

@@ -59,7 +59,9 @@ def answer(
         "instance": request.url.path,
         **(members or {}),
     }
-    return JSONResponse(content, status, media_type=MEDIA_TYPE)
+    # RFC 9110, 15.5.2. A scheme of a browser's own would have it ask for a name by itself.
+    headers = {"WWW-Authenticate": "Bearer"} if status == HTTPStatus.UNAUTHORIZED else None
+    return JSONResponse(content, status, headers, media_type=MEDIA_TYPE)
 
 
 async def _problem(request: Request, error: Exception) -> JSONResponse:
@@ -75,7 +77,9 @@ async def _problem(request: Request, error: Exception) -> JSONResponse:
 
 async def _http(request: Request, error: Exception) -> JSONResponse:
     assert isinstance(error, HTTPException)
-    return answer(request, error.status_code, "http", str(error.detail))
+    response = answer(request, error.status_code, "http", str(error.detail))
+    response.headers.update(error.headers or {})  # such as which methods there are
+    return response
 
 
 async def _unexpected(request: Request, _error: Exception) -> JSONResponse:

@@ -1,4 +1,4 @@
-"""Which runs of a store somebody looks for, as a condition of SQL."""
+"""Which runs and alarms of a store somebody looks for."""
 
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -52,6 +52,24 @@ class RunFilter:
         }
         wanted = {text: named for text, named in asked.items() if named[1] not in (None, "")}
         return " AND ".join(wanted) or "TRUE", dict(wanted.values())
+
+
+@dataclass(frozen=True, slots=True)
+class AlarmFilter:
+    """All conditions hold at once; what is None is not asked."""
+
+    before: int | None = None
+    """Only alarms with a lower id: the next page of a list."""
+    active: bool | None = None
+    """Whether nobody has acknowledged it."""
+    number: int | None = None
+    """Number of its fault."""
+    run: int | None = None
+    """Number of the run that it belongs to."""
+    since: datetime | None = None
+    """Came then or later."""
+    until: datetime | None = None
+    """Came before."""
 
 
 def _as_kept(time: datetime | None) -> str | None:

@@ -45,15 +45,30 @@ def refusal(request: str, on_behalf: OnBehalf, decision: int) -> RejectCode:
     ``decision`` is the count of ``LiveView`` by now: whoever decided upon an older state might
     have decided otherwise. Stop and Abort are never too late.
     """
-    abort_at_panel = request == "abort" and bool(on_behalf.panel)
-    needed = ROLES.index(NEEDS.get(request, "operate"))
-    if ROLES.index(on_behalf.role) < needed and not abort_at_panel:
-        return RejectCode.ROLE_MISSING
-    if request in AT_A_PANEL and not on_behalf.panel:
-        return RejectCode.NOT_AT_A_PANEL
+    code = not_theirs(request, on_behalf.role, on_behalf.panel)
+    if code is not RejectCode.NONE:
+        return code
     if request not in ENDS_MOTION and on_behalf.decision != decision:
         return RejectCode.SUPERSEDED
     return RejectCode.NONE
+
+
+def not_theirs(request: str, role: Role, panel: str) -> RejectCode:
+    """Why somebody with this role may not ask for it at this place; NONE when they may.
+
+    ``panel`` is the name of the panel; empty for everywhere else.
+    """
+    abort_at_panel = request == "abort" and bool(panel)
+    if ROLES.index(role) < ROLES.index(needed_role(request)) and not abort_at_panel:
+        return RejectCode.ROLE_MISSING
+    if request in AT_A_PANEL and not panel:
+        return RejectCode.NOT_AT_A_PANEL
+    return RejectCode.NONE
+
+
+def needed_role(request: str) -> Role:
+    """The least role that may ask for it."""
+    return NEEDS.get(request, "operate")
 
 
 class PageDesk:

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Request
+from fastapi import APIRouter, Header, Path, Request
 from pydantic import BaseModel, ConfigDict, Field
 
 from cellctl import log
@@ -17,6 +17,7 @@ from cellctl.api.local_socket.messages import (
 from cellctl.clock import now_s
 from cellctl.errors.local import DaemonNotReached, StopNotDelivered
 from cellctl.hmi.access import OWN_PAGE, Asked, Visitor
+from cellctl.hmi.answers.commands import CommandTold, command_told
 from cellctl.hmi.daemon_link import AnswerMissing
 from cellctl.hmi.problems import Problem
 from cellctl.packml.reject import RejectCode
@@ -35,15 +36,24 @@ _STATUS = {
 class CommandBody(BaseModel):
     """A command as a person gave it."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
     command: Annotated[CommandRequest, Field(discriminator="request")]
     decision: Annotated[int, Field(ge=0)] | None = None
     """``decision`` of the snapshot that the person saw; not needed for stop and abort."""
     reason: Annotated[str, Field(max_length=200)] = ""
+    """In the person's words, for the audit log."""
 
 
-Key = Annotated[str, Header(alias="Idempotency-Key", pattern=r"^[A-Za-z0-9-]{8,64}$")]
+KEY = r"^[A-Za-z0-9-]{8,64}$"
+Key = Annotated[
+    str,
+    Header(
+        alias="Idempotency-Key",
+        pattern=KEY,
+        description="Chosen anew for each command; with the same again nothing is repeated.",
+    ),
+]
 
 
 @router.post("/commands", status_code=202, dependencies=OWN_PAGE)
@@ -83,6 +93,23 @@ async def command(request: Request, body: CommandBody, key: Key, visitor: Asked)
         raise Problem(status, "refused", answer.text, reject_code=code, state=answer.state)
     assert isinstance(answer, Failed), "a command has no other answers"
     raise Problem(502, f"fault-{answer.number}", answer.text, fault=answer.number)
+
+
+@router.get("/commands/{key}")
+async def outcome(
+    request: Request,
+    key: Annotated[str, Path(pattern=KEY, description="Its `Idempotency-Key`.")],
+    _visitor: Asked,
+) -> CommandTold:
+    """What became of a command, by its key: for whoever had 504, or another's answer.
+
+    From the audit log, so it holds over restarts. 404 while nothing is on record: the cell has not
+    taken it, or only just, and a Stop or Abort is obeyed before it is written down.
+    """
+    found = await request.app.state.parts.archive.ask(lambda store: store.audit_with("key", key))
+    if not found:
+        raise Problem(404, "command-unknown", "there is no record of a command with this key")
+    return command_told(found[-1])
 
 
 def _on_behalf(visitor: Visitor, body: CommandBody, key: str) -> OnBehalf:

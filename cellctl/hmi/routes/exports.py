@@ -4,16 +4,18 @@ import asyncio
 import os
 import sys
 import tempfile
+import zipfile
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import BinaryIO, Literal
+from typing import Annotated, BinaryIO, Literal
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response, StreamingResponse
 
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.routes.parameters import RunNumber
 
 router = APIRouter(tags=["records"])
 REPORT_S = 60.0
@@ -25,8 +27,10 @@ takes some hundred MB of the disk until it is sent; the cell is not to wait for 
 _PIECE_BYTES = 2**18
 
 
-Images = Literal["lossless", "jpeg", "none"]
-"""What becomes of the raw images, in the words of ``cellctl runs export``."""
+Images = Annotated[
+    Literal["lossless", "jpeg", "none"],
+    Query(description="What becomes of the raw images, in the words of `cellctl runs export`."),
+]
 
 
 class RunExporter:
@@ -80,7 +84,7 @@ class RunExporter:
 
 
 @router.get("/runs/{number}/report", response_class=Response)
-async def report(request: Request, number: int, _visitor: Asked) -> Response:
+async def report(request: Request, number: RunNumber, _visitor: Asked) -> Response:
     """The report as one file to keep, made now; a page of its own, not a part of this one."""
     exporter = await _exporter(request, number)
     async with exporter.made(number, ("--single-file",), "report", REPORT_S) as folder:
@@ -91,21 +95,43 @@ async def report(request: Request, number: int, _visitor: Asked) -> Response:
 
 @router.get("/runs/{number}/recording", response_class=StreamingResponse)
 async def recording(
-    request: Request, number: int, _visitor: Asked, images: Images = "jpeg"
+    request: Request, number: RunNumber, _visitor: Asked, images: Images = "jpeg"
 ) -> Response:
     """The whole run as one MCAP file for Foxglove, made now; ``images=lossless`` is much larger."""
     exporter = await _exporter(request, number)
     name = f"run-{number}.mcap"
     form = ("--mcap", "--images", images)
     async with exporter.made(number, form, name, RECORDING_S) as folder:
-        # The folder goes now, and the file with its last reader: also when whoever asked has gone
-        # away in the middle, of which no handler is told.
-        file = (folder / name).open("rb")
+        return _file_to_keep(folder / name, name, "application/octet-stream")
+
+
+@router.get("/runs/{number}/record.zip", response_class=StreamingResponse)
+async def record(request: Request, number: RunNumber, _visitor: Asked) -> Response:
+    """The whole record to keep, made now: `run.json`, the report, and every file of the run."""
+    exporter = await _exporter(request, number)
+    async with exporter.made(number, (), "record", REPORT_S) as folder:
+        packed = folder / "record.zip"
+        await asyncio.to_thread(_pack, folder / "record", packed)
+        return _file_to_keep(packed, f"run-{number}.zip", "application/zip")
+
+
+def _pack(folder: Path, packed: Path) -> None:
+    # Stored as they are: pictures and recordings are compressed already.
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
+        for file in sorted(folder.rglob("*")):
+            if file.is_file():
+                archive.write(file, file.relative_to(folder))
+
+
+def _file_to_keep(path: Path, name: str, media_type: str) -> StreamingResponse:
+    # The folder goes now, and the file with its last reader: also when whoever asked has gone
+    # away in the middle, of which no handler is told.
+    file = path.open("rb")
     headers = {
         "Content-Disposition": f'attachment; filename="{name}"',
         "Content-Length": str(os.fstat(file.fileno()).st_size),
     }
-    return StreamingResponse(_pieces(file), media_type="application/octet-stream", headers=headers)
+    return StreamingResponse(_pieces(file), media_type=media_type, headers=headers)
 
 
 def _pieces(file: BinaryIO) -> Iterator[bytes]:

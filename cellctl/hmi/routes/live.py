@@ -1,16 +1,17 @@
 """The cell at this moment."""
 
-from typing import Any
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Path, Request
 from fastapi.responses import StreamingResponse
 
 from cellctl.clock import now_s
 from cellctl.fault_catalogue import known_fault
 from cellctl.hmi.access import Asked
+from cellctl.hmi.answers.permissions import Permission, permissions
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.words.languages import Language
-from cellctl.hmi.words.spoken import description_in, permitted_in, snapshot_in
+from cellctl.hmi.words.spoken import description_in, snapshot_in
 from cellctl.translations import fault_words
 from cellctl.version import software
 
@@ -21,10 +22,11 @@ STALE_S = 1.5
 @router.get("/status")
 async def status(request: Request, _visitor: Asked, language: Language) -> dict[str, Any]:
     """The newest snapshot; 503 when there is none that is fresh."""
-    return snapshot_in(language, _fresh(request))
+    return snapshot_in(language, fresh(request))
 
 
-def _fresh(request: Request) -> dict[str, Any]:
+def fresh(request: Request) -> dict[str, Any]:
+    """The newest snapshot; raises ``Problem`` 503 when it is old, or there is none."""
     hub = request.app.state.parts.hub
     if hub.age_s is None or hub.age_s > STALE_S:
         raise Problem(503, "daemon-away", "the cell has not said anything lately").later(1)
@@ -38,9 +40,9 @@ async def description(request: Request, _visitor: Asked, language: Language) -> 
 
 
 @router.get("/permitted")
-async def permitted(request: Request, _visitor: Asked, language: Language) -> dict[str, Any]:
-    """By command: code 0 if the cell would take it now, else why not."""
-    return permitted_in(language, _fresh(request)["permitted"])
+async def permitted(request: Request, visitor: Asked, language: Language) -> dict[str, Permission]:
+    """By command: code 0 if the cell would take it now from whoever asks, else why not."""
+    return permissions(visitor, fresh(request)["permitted"], language)
 
 
 @router.get("/health")
@@ -69,7 +71,11 @@ async def curve(request: Request, _visitor: Asked) -> dict[str, Any]:
 
 
 @router.get("/faults/{number}")
-async def fault(number: int, _visitor: Asked, language: Language) -> dict[str, Any]:
+async def fault(
+    number: Annotated[int, Path(description="Number of the fault.")],
+    _visitor: Asked,
+    language: Language,
+) -> dict[str, Any]:
     """One fault of the catalogue, those of installed packages included."""
     found = known_fault(number)
     if found is None:

@@ -2,13 +2,14 @@
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Path, Query, Request
 from fastapi.responses import Response
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.routes.parameters import MOST, RunNumber
 from cellctl.hmi.words.languages import Language
 from cellctl.hmi.words.spoken import run_in
 from cellctl.records.run_filter import RunFilter
@@ -16,16 +17,18 @@ from cellctl.records.run_filter import RunFilter
 router = APIRouter(tags=["records"])
 _SHOWN = frozenset({"image/png", "image/jpeg"})
 """What a browser may show; everything else it may only keep."""
-MOST = 2**53 - 1
-"""What a number of JSON holds exactly, and SQLite at all."""
+
+
+FileName = Annotated[str, Path(description="Name of the file, as the run lists it.")]
 
 
 class RunSearch(BaseModel):
     """Which runs, and how many of them."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
     limit: Annotated[int, Field(ge=1, le=200)] = 50
+    """Most runs of one answer."""
     before: Annotated[int | None, Field(ge=1, le=MOST)] = None
     """The last number of the page before."""
     serial: Annotated[str, Field(max_length=24)] = ""
@@ -33,8 +36,9 @@ class RunSearch(BaseModel):
     recipe: Annotated[str, Field(max_length=80)] = ""
     """Its name."""
     operator: Annotated[str, Field(max_length=80)] = ""
+    """Name or order, as the run has it."""
     result: Annotated[str, Field(max_length=16)] = ""
-    """Such as ``good``, or ``open``."""
+    """Such as `good`, or `open`."""
     fault: Annotated[int | None, Field(ge=1, le=MOST)] = None
     """Number of a fault that ended the run, or of an alarm that it raised."""
     calibration: Annotated[str, Field(max_length=80)] = ""
@@ -60,13 +64,17 @@ async def runs(
 
 
 @router.get("/runs/{number}")
-async def run(request: Request, number: int, _visitor: Asked, language: Language) -> dict[str, Any]:
+async def run(
+    request: Request, number: RunNumber, _visitor: Asked, language: Language
+) -> dict[str, Any]:
     """One run with all its figures."""
     return run_in(language, await request.app.state.parts.archive.run(number))
 
 
 @router.get("/runs/{number}/artefacts/{name:path}", response_class=Response)
-async def artefact(request: Request, number: int, name: str, _visitor: Asked) -> Response:
+async def artefact(
+    request: Request, number: RunNumber, name: FileName, _visitor: Asked
+) -> Response:
     """A file of a run; 410 when it is damaged."""
     found = await request.app.state.parts.archive.file(number, name)
     if found is None:
@@ -85,7 +93,9 @@ async def artefact(request: Request, number: int, name: str, _visitor: Asked) ->
 
 @router.get("/audit")
 async def audit(
-    request: Request, visitor: Asked, limit: Annotated[int, Query(ge=1, le=500)] = 100
+    request: Request,
+    visitor: Asked,
+    limit: Annotated[int, Query(ge=1, le=500, description="Most entries of one answer.")] = 100,
 ) -> dict[str, Any]:
     """Who did what, the newest first; for those who maintain the cell."""
     role: Role = visitor.role

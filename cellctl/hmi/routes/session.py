@@ -1,14 +1,15 @@
 """Sign in and out."""
 
-from typing import Annotated, Any
+from typing import Annotated
 
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from cellctl import log
-from cellctl.api.local_socket.messages import Role
-from cellctl.hmi.access import COOKIE, OWN_PAGE, Asked, address_of
+from cellctl.hmi.access import COOKIE, OWN_PAGE, Asked, Visitor, address_of
+from cellctl.hmi.answers.permissions import SessionTold, session_told
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.words.languages import Language
 
 router = APIRouter(tags=["session"])
 _log = log.get(__name__)
@@ -17,21 +18,29 @@ _log = log.get(__name__)
 class SignIn(BaseModel):
     """Name and PIN or password."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
     name: Annotated[str, Field(max_length=32)]
+    """As in the settings of the page."""
     pin: Annotated[str, Field(max_length=128)]
+    """PIN or password."""
 
 
 @router.get("/session")
-async def who(visitor: Asked) -> dict[str, Any]:
-    """Who asks, with which role, at which panel, and whether they were idle for too long."""
-    return _answer(visitor.person, visitor.role, visitor.panel, idle=visitor.idle)
+async def who(visitor: Asked, language: Language) -> SessionTold:
+    """Who asks, with which role, at which panel, and which commands are theirs to give."""
+    return session_told(visitor, language)
 
 
 @router.post("/session", dependencies=OWN_PAGE)
-async def sign_in(request: Request, response: Response, body: SignIn) -> dict[str, Any]:
-    """Sign in; the answer sets a cookie that scripts cannot read."""
+async def sign_in(
+    request: Request, response: Response, body: SignIn, language: Language
+) -> SessionTold:
+    """Sign in; the answer sets a cookie that scripts cannot read.
+
+    401 for a wrong name or PIN, 429 after five tries in a minute from one address. A program with a
+    token does not sign in.
+    """
     parts = request.app.state.parts
     address = address_of(request)
     # By the address and not by the name: otherwise anybody could lock a colleague out.
@@ -45,17 +54,15 @@ async def sign_in(request: Request, response: Response, body: SignIn) -> dict[st
     _log.info("signed in", person=person.name, role=person.role, address=address)
     secret = parts.sessions.open(person.name, person.role)
     response.set_cookie(COOKIE, secret, path="/", secure=True, httponly=True, samesite="strict")
-    return _answer(person.name, person.role, parts.gatekeeper.panel(request))
+    panel = parts.gatekeeper.panel(request)
+    return session_told(Visitor(person.name, person.role, panel, ""), language)
 
 
 @router.delete("/session", dependencies=OWN_PAGE)
-async def sign_out(request: Request, response: Response) -> dict[str, Any]:
+async def sign_out(request: Request, response: Response, language: Language) -> SessionTold:
     """Sign out; also for somebody who is not signed in."""
     parts = request.app.state.parts
     parts.sessions.close(request.cookies.get(COOKIE, ""))
     response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
-    return _answer("", "view", parts.gatekeeper.panel(request))
-
-
-def _answer(person: str, role: Role, panel: str, *, idle: bool = False) -> dict[str, Any]:
-    return {"person": person, "role": role, "panel": panel, "idle": idle}
+    panel = parts.gatekeeper.panel(request)
+    return session_told(Visitor("", "view", panel, ""), language)

@@ -43,6 +43,7 @@ from cellctl.records.entries import (
 )
 from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.parts import MATE_SERIAL, PARTS
+from cellctl.records.run_filter import AlarmFilter
 from cellctl.records.seals import Seal
 from cellctl.records.trend import Sample
 
@@ -59,6 +60,49 @@ def audit_log(session: Session) -> list[AuditEntry]:
     """Every entry of the audit log, oldest first."""
     found = session.scalars(select(AuditRow).order_by(AuditRow.id))
     return [to_entry(row, AuditEntry) for row in found]
+
+
+def newest_audit(session: Session, limit: int) -> list[AuditEntry]:
+    """The newest entries of the audit log, newest first."""
+    found = session.scalars(select(AuditRow).order_by(AuditRow.id.desc()).limit(limit))
+    return [to_entry(row, AuditEntry) for row in found]
+
+
+def audit_with(session: Session, key: str, value: str) -> list[AuditEntry]:
+    """Entries of the audit log whose detail has this text under this key, oldest first."""
+    # The key goes in as a value too: it is no part of the SQL.
+    same = func.json_extract(AuditRow.detail, f"$.{key}") == value
+    found = session.scalars(select(AuditRow).where(same).order_by(AuditRow.id))
+    return [to_entry(row, AuditEntry) for row in found]
+
+
+def alarms(session: Session, wanted: AlarmFilter, limit: int) -> list[Alarm]:
+    """The newest of the wanted alarms, newest first."""
+    query = select(AlarmRow).order_by(AlarmRow.id.desc()).limit(limit)
+    if wanted.active is not None:
+        never = AlarmRow.acknowledged.is_(None)
+        query = query.where(never if wanted.active else ~never)
+    asked = (
+        (AlarmRow.id < wanted.before, wanted.before),
+        (AlarmRow.number == wanted.number, wanted.number),
+        (AlarmRow.run == wanted.run, wanted.run),
+        (AlarmRow.time >= wanted.since, wanted.since),
+        (AlarmRow.time < wanted.until, wanted.until),
+    )
+    query = query.where(*(condition for condition, value in asked if value is not None))
+    return [to_entry(row, Alarm) for row in session.scalars(query)]
+
+
+def alarm(session: Session, number: int) -> Alarm | None:
+    """The alarm with this id."""
+    row = session.get(AlarmRow, number)
+    return None if row is None else to_entry(row, Alarm)
+
+
+def calibration(session: Session, identity: str) -> Calibration | None:
+    """The calibration with this id."""
+    row = session.get(CalibrationRow, identity)
+    return None if row is None else to_entry(row, Calibration)
 
 
 def run_heads(

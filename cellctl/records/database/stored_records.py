@@ -2,9 +2,11 @@
 
 from datetime import datetime
 
-from cellctl.records.database import reading, rows, schema
+from cellctl.records.database import ledger, reading, rows, schema
+from cellctl.records.database.sealed import RUN
 from cellctl.records.database.sessions import Database
 from cellctl.records.entries import Alarm, AuditEntry, Calibration, Phase, RunHead, RunRecord
+from cellctl.records.run_filter import AlarmFilter
 from cellctl.records.trend import Sample
 
 LINE_SEQ = "line_seq"
@@ -35,6 +37,39 @@ class StoredRecords:
         """Every entry of the audit log, oldest first."""
         with self._database.read() as session:
             return reading.audit_log(session)
+
+    def newest_audit(self, limit: int) -> list[AuditEntry]:
+        """The newest entries of the audit log, newest first."""
+        with self._database.read() as session:
+            return reading.newest_audit(session, limit)
+
+    def audit_with(self, key: str, value: str) -> list[AuditEntry]:
+        """Entries of the audit log whose detail has this text under this key, oldest first."""
+        with self._database.read() as session:
+            return reading.audit_with(session, key, value)
+
+    def alarms(self, wanted: AlarmFilter, limit: int) -> list[Alarm]:
+        """The newest of the wanted alarms, newest first."""
+        with self._database.read() as session:
+            return reading.alarms(session, wanted, limit)
+
+    def alarm(self, number: int) -> Alarm | None:
+        """The alarm with this id; None where there is none."""
+        with self._database.read() as session:
+            return reading.alarm(session, number)
+
+    def calibration(self, identity: str) -> Calibration | None:
+        """The calibration with this id; None where none was ever stored."""
+        with self._database.read() as session:
+            return reading.calibration(session, identity)
+
+    def is_as_sealed(self, run: int) -> bool:
+        """Whether a closed run is as it was sealed; False for one that has no seal.
+
+        The run alone: ``RunStore.verify`` goes through the whole chain, and through the files.
+        """
+        with self._database.read() as session:
+            return ledger.is_as_sealed(session, RUN, run)
 
     def line_seq(self) -> int | None:
         """The last command number of the line before this start."""
