@@ -82,14 +82,16 @@ def alarms(session: Session, wanted: AlarmFilter, limit: int) -> list[Alarm]:
     if wanted.active is not None:
         never = AlarmRow.acknowledged.is_(None)
         query = query.where(never if wanted.active else ~never)
-    asked = (
-        (AlarmRow.id < wanted.before, wanted.before),
-        (AlarmRow.number == wanted.number, wanted.number),
-        (AlarmRow.run == wanted.run, wanted.run),
-        (AlarmRow.time >= wanted.since, wanted.since),
-        (AlarmRow.time < wanted.until, wanted.until),
-    )
-    query = query.where(*(condition for condition, value in asked if value is not None))
+    if wanted.before is not None:
+        query = query.where(AlarmRow.id < wanted.before)
+    if wanted.number is not None:
+        query = query.where(AlarmRow.number == wanted.number)
+    if wanted.run is not None:
+        query = query.where(AlarmRow.run == wanted.run)
+    if wanted.since is not None:
+        query = query.where(AlarmRow.time >= wanted.since)
+    if wanted.until is not None:
+        query = query.where(AlarmRow.time < wanted.until)
     return [to_entry(row, Alarm) for row in session.scalars(query)]
 
 

@@ -1,4 +1,4 @@
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
@@ -19,6 +19,7 @@ def start(
     serial: str = "SAT-0001",
     process: str = "deck-to-frame",
     mode: str = PRODUCTION,
+    calibrations: Mapping[str, str] | None = None,
 ) -> int:
     return store.start_run(
         process=process,
@@ -29,7 +30,7 @@ def start(
         mode=mode,
         software="cellctl 0.1.0",
         config_hash="cd" * 32,
-        calibration_ids={"head_1": "ef" * 32},
+        calibration_ids={"head_1": "ef" * 32} if calibrations is None else calibrations,
         simulated=True,
         operator="OP-7",
     )
