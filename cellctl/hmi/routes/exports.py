@@ -12,6 +12,7 @@ from typing import Annotated, BinaryIO, Literal
 
 from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response, StreamingResponse
+from starlette.types import Receive, Scope, Send
 
 from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
@@ -102,7 +103,7 @@ async def recording(
     name = f"run-{number}.mcap"
     form = ("--mcap", "--images", images)
     async with exporter.made(number, form, name, RECORDING_S) as folder:
-        return _file_to_keep(folder / name, name, "application/octet-stream")
+        return FileToKeep(folder / name, name, "application/octet-stream")
 
 
 @router.get("/runs/{number}/record.zip", response_class=StreamingResponse)
@@ -112,7 +113,7 @@ async def record(request: Request, number: RunNumber, _visitor: Asked) -> Respon
     async with exporter.made(number, (), "record", REPORT_S) as folder:
         packed = folder / "record.zip"
         await asyncio.to_thread(_pack, folder / "record", packed)
-        return _file_to_keep(packed, f"run-{number}.zip", "application/zip")
+        return FileToKeep(packed, f"run-{number}.zip", "application/zip")
 
 
 def _pack(folder: Path, packed: Path) -> None:
@@ -123,22 +124,31 @@ def _pack(folder: Path, packed: Path) -> None:
                 archive.write(file, file.relative_to(folder))
 
 
-def _file_to_keep(path: Path, name: str, media_type: str) -> StreamingResponse:
-    # The folder goes now, and the file with its last reader: also when whoever asked has gone
-    # away in the middle, of which no handler is told.
-    file = path.open("rb")
-    headers = {
-        "Content-Disposition": f'attachment; filename="{name}"',
-        "Content-Length": str(os.fstat(file.fileno()).st_size),
-    }
-    return StreamingResponse(_pieces(file), media_type=media_type, headers=headers)
+class FileToKeep(StreamingResponse):
+    """A file to be saved by whoever asks; open from now on, so that its folder may go."""
+
+    def __init__(self, path: Path, name: str, media_type: str) -> None:
+        self._file = path.open("rb")
+        headers = {
+            "Content-Disposition": f'attachment; filename="{name}"',
+            "Content-Length": str(os.fstat(self._file.fileno()).st_size),
+        }
+        super().__init__(_pieces(self._file), media_type=media_type, headers=headers)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Send it."""
+        try:
+            await super().__call__(scope, receive, send)
+        finally:
+            # Also when whoever asked has gone before the first piece, of which nothing else is
+            # told.
+            self._file.close()
 
 
 def _pieces(file: BinaryIO) -> Iterator[bytes]:
     # In memory as a whole it would be as large as the page's process.
-    with file:
-        while piece := file.read(_PIECE_BYTES):
-            yield piece
+    while piece := file.read(_PIECE_BYTES):
+        yield piece
 
 
 async def _exporter(request: Request, number: int) -> RunExporter:

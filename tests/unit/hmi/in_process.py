@@ -1,12 +1,13 @@
 """The API without server, browser and daemon: requests go straight into the application."""
 
+import asyncio
 import json
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from starlette.types import Message
+from starlette.types import ASGIApp, Message
 
 from cellctl.api.local_socket.live_feed import as_line
 from cellctl.api.local_socket.messages import Answer, PageCommand, Taken
@@ -83,13 +84,22 @@ class Api:
         return await answered(self._served, scope, body)
 
 
-async def answered(app: Any, scope: dict[str, Any], body: bytes = b"") -> Reply:
-    """What an application answers to one request; raises what the application raises."""
+async def answered(
+    app: ASGIApp, scope: dict[str, Any], body: bytes = b"", *, stays: bool = True
+) -> Reply:
+    """What an application answers to one request; raises what the application raises.
+
+    ``stays``: whoever asks waits for the whole answer, and has not gone when it begins.
+    """
     waiting: list[Message] = [{"type": "http.request", "body": body, "more_body": False}]
     sent: list[Message] = []
 
     async def receive() -> Message:
-        return waiting.pop() if waiting else {"type": "http.disconnect"}
+        if waiting:
+            return waiting.pop()
+        if stays:
+            await asyncio.Event().wait()
+        return {"type": "http.disconnect"}
 
     async def send(message: Message) -> None:
         sent.append(message)

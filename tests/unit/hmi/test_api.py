@@ -36,6 +36,8 @@ def test_what_the_daemon_pushes_is_what_the_api_shows(page: Client, paper: Paper
     end_s = time.monotonic() + 2
     while page.get("status").json["state"] != "EXECUTE":
         assert time.monotonic() < end_s
+    assert page.get("permitted").json["start"]["code"] == RejectCode.ROLE_MISSING
+    page.sign_in("boris")
     assert page.get("permitted").json == snapshot()["permitted"]
     assert page.get("description").json["recipes"] == paper.description["recipes"]
     assert page.get("health").json["daemon_linked"] is True
@@ -54,8 +56,10 @@ def test_a_command_goes_to_the_daemon_with_person_role_panel_and_reason(
     page: Client, paper: PaperDaemon
 ) -> None:
     anna = {"person": "anna", "role": "operate", "panel": "panel-1", "idle": False}
-    assert page.sign_in("anna").json == anna
-    assert page.get("session").json == anna
+    for told in (page.sign_in("anna").json, page.get("session").json):
+        commands = told.pop("commands")
+        assert told == anna
+        assert (commands["reset"]["code"], commands["mode"]["needs"]) == (0, "maintain")
     start = {"request": "start", "serial": "SAT-9", "recipe": "1"}
     reply = page.command(start)
     assert (reply.status, reply.json["state"]) == (202, "EXECUTE")
@@ -137,7 +141,9 @@ def test_a_program_has_a_token_that_expires(page: Client, paper: PaperDaemon) ->
     by = paper.asked[0].on_behalf
     assert (by.person, by.panel) == ("line", ""), "a program sees no cell, wherever it runs"
     for wrong in (f"Bearer {TOKEN}old", "Bearer nothing"):
-        problem(page.get("status", Authorization=wrong), 401, "token")
+        refused = page.get("status", Authorization=wrong)
+        problem(refused, 401, "token")
+        assert refused.headers["www-authenticate"] == "Bearer"
 
 
 @pytest.mark.parametrize(
