@@ -1,7 +1,8 @@
 // Alarms: the first one on top, each with its cause and what to do.
 
+import { ask } from "./api.js";
 import { give, whyNot } from "./buttons.js";
-import { h, time } from "./dom.js";
+import { h, num, table, time } from "./dom.js";
 import { cell } from "./live.js";
 import { given, spoken, t } from "./texts.js";
 
@@ -34,11 +35,33 @@ function one(alarm, first, firstSince) {
       h("span", { class: "dim" }, reason || t("acknowledge_does"))));
 }
 
+// More in an hour than a person can treat.
+const MANY = 10;
+const PAGE = 20;
+
+function row(one) {
+  const run = one.run ? h("a", { href: `#history/${one.run}` }, `${one.run}`) : "—";
+  return [h("span", { class: `mark p${priority(one)}` }, mark(one)), one.text, time(one.time), num(run), one.acknowledged_by?.replace(/^page:/, "") || t("nobody_yet"), time(one.acknowledged)];
+}
+
+// Each time that an alarm came, whoever has acknowledged it meanwhile.
+async function past(place, before = null) {
+  try {
+    const { alarms, last_hour: count } = await ask(`alarms?limit=${PAGE}${before ? `&before=${before}` : ""}`);
+    const more = alarms.length === PAGE ? h("button", { type: "button", onclick: () => past(place, alarms[alarms.length - 1].id) }, t("older")) : "";
+    const hour = h("p", { class: count >= MANY ? "bad" : "dim" }, count >= MANY ? "▲ " : "", t("last_hour", count));
+    const heads = ["", t("alarm"), t("came"), num(t("run_head")), t("acknowledged_by"), t("acknowledged")];
+    place.replaceChildren(h("h2", {}, t("alarm_history")), hour, alarms.length ? table(heads, alarms.map(row)) : h("p", {}, t("none_yet")), more);
+  } catch (error) { place.replaceChildren(h("h2", {}, t("alarm_history")), h("p", { class: "bad" }, t("not_read", error.message))); }
+}
+
 let drawn = "";
+let known = "";
 export function build(root) {
-  drawn = "";
-  root.replaceChildren(h("section", { id: "alarms" }));
+  drawn = known = "";
+  root.replaceChildren(h("section", { id: "alarms" }), h("section", { id: "past" }));
   update(root);
+  if (!known) past(root.querySelector("#past"));
 }
 
 export function update(root) {
@@ -47,6 +70,11 @@ export function update(root) {
   if (!s || !place) return;
   const first = s.faults[0]?.number;
   const alarms = [...s.alarms].sort((a, b) => (b.number === first) - (a.number === first));
+  const came = JSON.stringify([alarms.map((alarm) => alarm.since), document.documentElement.lang]);
+  if (came !== known) {
+    known = came;
+    past(root.querySelector("#past"));
+  }
   const key = JSON.stringify([alarms, s.state, s.faults.map((fault) => fault.number), document.documentElement.lang, whyNot("acknowledge")]);
   if (key === drawn) return;
   drawn = key;

@@ -2,7 +2,7 @@
 
 import * as alarms from "./alarms.js";
 import { ask, send } from "./api.js";
-import { onLost, visitor } from "./buttons.js";
+import { nobody, onLost, visitor } from "./buttons.js";
 import * as calibration from "./calibration.js";
 import { h, shown } from "./dom.js";
 import * as health from "./health.js";
@@ -80,7 +80,8 @@ function show() {
 }
 
 async function who() {
-  try { Object.assign(visitor, await ask("session")); } catch { Object.assign(visitor, { person: "", role: "view", panel: "", idle: false }); }
+  // Whoever has no answer is who they were: their Stop has to stay where it is.
+  try { Object.assign(visitor, await ask("session")); } catch (error) { if (error.status) Object.assign(visitor, nobody()); }
   head();
 }
 

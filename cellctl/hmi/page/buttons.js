@@ -10,25 +10,23 @@ const NO_ANSWER_MS = 3000;
 const ALWAYS = new Set(["stop", "abort"]);
 const PRESSED_LONG = new Set(["reset", "unhold", "start", "procedure"]);
 const ORDER = ["start", "reset", "hold", "unhold", "clear", "stop", "abort"];
-const PANEL_ONLY = new Set(["start", "reset", "unhold", "mode", "procedure"]);
-const RANKS = { view: 0, operate: 1, maintain: 2 };
-const NEEDS = { mode: "maintain", procedure: "maintain" };
-const SUPERSEDED = 266;
+const [SUPERSEDED, ROLE_MISSING, NOT_AT_A_PANEL] = [266, 268, 269];
 const said = {};
 
-export const visitor = { person: "", role: "view", panel: "", idle: false };
+// Nobody, to whom nothing is allowed.
+export const nobody = () => ({ person: "", role: "view", panel: "", idle: false, commands: {} });
+// Who looks at this page, and what the API says that their role and place allow.
+export const visitor = nobody();
 const refusals = new Set();
 // Called when a command was refused for who or where its person is: the page may know it otherwise.
 export function onLost(act) { refusals.add(act); }
 
-// The cell's answer, and before it what is known here: both only spare a vain press.
+// What is not theirs to ask for, and else what the cell says of it: both only spare a vain press.
 export function whyNot(name) {
-  const needed = NEEDS[name] || "operate";
-  const abortAtPanel = name === "abort" && visitor.panel;
-  if (RANKS[visitor.role] < RANKS[needed] && !abortAtPanel) {
-    return visitor.idle ? t("idle_sign_in") : t("needs_sign_in", t(`role_${needed}`));
-  }
-  if (PANEL_ONLY.has(name) && !visitor.panel) return t("panel_only");
+  const own = visitor.commands[name];
+  if (!own) return t("sign_in_first");
+  if (own.code === ROLE_MISSING) return visitor.idle ? t("idle_sign_in") : t("needs_sign_in", t(`role_${own.needs}`));
+  if (own.code === NOT_AT_A_PANEL) return t("panel_only");
   if (ALWAYS.has(name)) return "";  // pressed on whatever is seen: the cell gives an honest answer
   if (stale()) return t("stale_button");
   if (name === "acknowledge") return "";

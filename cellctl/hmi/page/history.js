@@ -58,6 +58,29 @@ function used(head) {
   return rows.length ? [h("h2", {}, t("calibrations")), table([t("kind"), t("identity"), ""], rows)] : [];
 }
 
+// What stands behind a part: its runs and those of parts it was joined to, each with what it used.
+async function behind(root, serial) {
+  const place = h("section", { id: "behind" });
+  root.replaceChildren(h("section", {}, h("p", {}, h("a", { href: "#history" }, t("back")))), place);
+  try {
+    const { runs } = await ask(`recall/serials/${encodeURIComponent(serial)}`);
+    const rows = runs.flatMap((run) => run.calibrations.map((one, i) => [
+      i ? "" : h("a", { href: `#history/${run.number}` }, `${run.number}`), i ? "" : run.serial, i ? "" : run.joined_to || "—", i ? "" : verdict(run.ended_as), i ? "" : seal(run.as_sealed),
+      one.name, h("a", { href: `#history/used=${one.id}` }, h("code", {}, one.id.slice(0, 12))), today(one.kept)]));
+    place.replaceChildren(h("h2", {}, t("behind", serial)), table([t("run_head"), t("serial"), t("joined_to"), t("result"), t("seal"), t("kind"), t("identity"), t("state_today")], rows));
+  } catch (error) { place.replaceChildren(complaint(error)); }
+}
+
+function today(kept) {
+  if (!kept) return t("not_kept");
+  return kept.invalidated ? h("span", { class: "bad" }, `■ ${t("void_since", time(kept.invalidated), kept.invalidated_reason)}`) : t("made_at", time(kept.made));
+}
+
+function seal(as) {
+  if (as === null) return t("still_open");
+  return as ? t("as_sealed") : h("span", { class: "bad" }, `■ ${t("not_as_sealed")}`);
+}
+
 function within(lower, upper) {
   const given = (value) => typeof value === "number";
   if (given(lower) && given(upper)) return `${shown(lower)} … ${shown(upper)}`;
@@ -82,10 +105,12 @@ async function detail(root, number) {
     const images = run.files.filter((file) => file.media_type.startsWith("image/"));
     place.replaceChildren(h("h2", {}, t("run", number), ` · ${run.head.serial} · `, verdict(run.part)),
       run.head.result === "interrupted" ? h("p", { class: "bad" }, t("interrupted_note")) : "",
-      h("p", {}, `${time(run.head.started)} – ${time(run.head.ended)} · ${run.head.operator || "—"} · ${run.head.software}`, run.head.simulated ? ` · ${t("simulated")}` : ""),
+      h("p", {}, `${time(run.head.started)} – ${time(run.head.ended)} · ${run.head.operator || "—"} · ${run.head.software}`, run.head.simulated ? ` · ${t("simulated")}` : "", " · ", seal(run.as_sealed)),
       run.head.fault ? h("p", { class: "bad" }, run.head.fault) : "",
       h("p", {}, h("a", { href: `/api/v1/runs/${number}/report`, download: "" }, t("report")), " · ",
-        h("a", { href: `/api/v1/runs/${number}/recording`, download: "" }, t("recording"))),
+        h("a", { href: `/api/v1/runs/${number}/recording`, download: "" }, t("recording")), " · ",
+        h("a", { href: `/api/v1/runs/${number}/record.zip`, download: "" }, t("record_zip")), " · ",
+        h("a", { href: `#history/behind=${run.head.serial}` }, t("behind_link"))),
       figures(run), ...passes(run), h("h2", {}, t("steps")), table([t("step"), t("label"), t("began"), t("ended")], run.phases.map((one) => [one.number, one.label, time(one.began), time(one.ended)])),
       ...used(run.head),
       run.gauges.length ? table([t("hole"), num("mm"), t("source"), t("started"), t("verdict"), ""], run.gauges.map((one) => [one.hole, num(shown(one.diameter_mm, 2)), one.source, time(one.time), verdict(one.verdict), one.counts ? "" : t("superseded")])) : "",
@@ -95,7 +120,8 @@ async function detail(root, number) {
 
 export function build(root, asked) {
   const [name, id] = (asked || "").split("=");
-  if (id) list(root, { calibration: id });
+  if (name === "behind" && id) behind(root, id);
+  else if (id) list(root, { calibration: id });
   else if (name) detail(root, name);
   else list(root);
 }

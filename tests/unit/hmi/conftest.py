@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.hmi.people import secret_of
 from cellctl.records.store import RunStore
 from tests.unit.hmi.http_client import Client
@@ -34,7 +35,16 @@ def _store(folder: Path) -> None:
         store.begin_phase(number, 10, "measure")
         store.add_artefact(number, "look.png", b"\x89PNG of " + serial.encode(), "image/png")
         store.add_artefact(number, "page.html", b"<script>1</script>", "text/html")
+        store.add_alarm(number, 512, "F512 Force limit exceeded: Fz -50.8 N, limit 50.0")
         store.close_run(number, result)
+    store.acknowledge_alarms(512, "page:anna@panel-1")
+    store.add_alarm(None, 207, "F207 Data from a device is too old: head 1")
+    for year, residual in ((2025, 0.12), (2026, 0.21)):
+        made = datetime(year, 1, 2, 3, 4, 5, tzinfo=UTC)
+        check = {"name": "residual", "value": residual, "limit": 0.2, "unit": "px", "side": "max"}
+        record = {"checks": [check | {"passed": residual <= 0.2}]}
+        until = made.replace(year=2036)
+        store.add_calibration(StoredCalibration("head", record, made, until, "test", "H-1"))
     store.audit("page:anna", "reset", {"reason": "shift begins"})
     store.close()
 

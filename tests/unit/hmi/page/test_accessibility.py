@@ -46,10 +46,12 @@ def test_every_screen_of_a_cell_at_rest(told: Screen) -> None:
     found = []
     for name, shows in {
         "run": "#cmd-start",
-        "alarms": "#alarms h2",
+        "alarms": "#past tbody tr",
         "history": "#found tbody tr",
         "history/1": "figure img",
+        "history/behind=SAT-1": "#behind tbody tr",
         "calibration": "#calibrations tbody tr",
+        "calibration/head": "#trend tbody tr",
         "maintenance": "tbody tr",
         "maintenance/101": "#cmd-procedure",
         "line": "#from-cell tbody tr",

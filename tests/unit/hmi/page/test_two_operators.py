@@ -21,6 +21,8 @@ from cellctl.api.local_socket.messages import (
 )
 from cellctl.api.local_socket.page_desk import PageDesk
 from cellctl.api.local_socket.users import Users
+from cellctl.hmi.access import Visitor
+from cellctl.hmi.answers.permissions import session_told
 from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.page.screen import Screen, Tabs
 from tests.unit.hmi.scripted_daemon import PaperDaemon, page_process, page_thread, serving, snapshot
@@ -209,7 +211,7 @@ def test_a_page_process_that_froze_or_was_started_again_is_told_at_once(
 
 def test_whoever_was_idle_signs_in_again_without_signing_out(screen: Screen) -> None:
     screen.sign_in()
-    idle = {"person": "anna", "role": "view", "panel": "panel-1", "idle": True}
+    idle = session_told(Visitor("anna", "view", "panel-1", ""), "en").model_dump() | {"idle": True}
     screen.tab.route("**/api/v1/session", lambda route: route.fulfill(json=idle))
     screen.tab.reload()
     expect(screen.tab.locator("#who")).to_contain_text(re.compile("anna.*idle"))

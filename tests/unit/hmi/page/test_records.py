@@ -1,0 +1,63 @@
+"""What the records tell on the page: past alarms, what stands behind a part, calibrations over years."""
+
+import re
+import sqlite3
+from contextlib import closing
+from pathlib import Path
+
+from playwright.sync_api import expect
+
+from cellctl.records.database.schema_version import FILE
+from tests.unit.hmi.page.screen import Screen
+from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
+
+
+def test_past_alarms_say_when_and_by_whom_they_were_acknowledged(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    tab = screen.tab
+    tab.click("nav a[href='#alarms']")
+    past = tab.locator("#past")
+    expect(past.locator("tbody tr")).to_have_count(3)
+    expect(past.locator("tbody tr").first).to_contain_text("nobody yet")
+    expect(past.locator("tbody tr").last).to_contain_text("anna@panel-1")
+    expect(past).to_contain_text("In the last hour: 3")
+    # A new one that the cell tells of is looked up: the list does not wait for a visit.
+    with tab.expect_response(re.compile("/api/v1/alarms")):
+        paper.snapshot = snapshot(alarms=[alarm(304, "It did not stop")])
+    tab.click("#language")
+    expect(past).to_contain_text("最近一小时")
+    expect(past.locator("tbody tr").last).to_contain_text("-50.8 N")
+
+
+def test_what_stands_behind_a_part(screen: Screen) -> None:
+    tab = screen.tab
+    tab.goto(f"{screen.url}#history/1")
+    expect(tab.locator("main")).to_contain_text("as it was sealed")
+    tab.click("text=What stands behind this part")
+    behind = tab.locator("#behind")
+    expect(behind).to_contain_text("What stands behind SAT-1")
+    expect(behind.locator("tbody tr")).to_have_count(1)
+    expect(behind).to_contain_text("not in these records")
+    behind.locator("text=id-SAT-1").click()
+    expect(tab.locator("#find-calibration")).to_have_value("id-SAT-1")
+
+
+def test_a_run_that_was_changed_is_told_as_such(screen: Screen, settings: Path) -> None:
+    database = sqlite3.connect(settings.parent / "store" / FILE)
+    with closing(database), database:
+        database.execute("UPDATE runs SET operator = 'somebody else' WHERE number = 1")
+    screen.tab.goto(f"{screen.url}#history/1")
+    expect(screen.tab.locator("main .bad")).to_contain_text("changed after it was sealed")
+
+
+def test_the_figures_of_a_calibration_over_the_years(screen: Screen) -> None:
+    tab = screen.tab
+    tab.click("nav a[href='#calibration']")
+    tab.click("#calibrations td a[href='#calibration/head']")
+    figures = tab.locator("#trend tbody tr")
+    expect(figures).to_have_count(1)
+    expect(figures.locator("td")).to_have_text(["residual", "0.120", "■ 0.210", "≤ 0.200 px"])
+    expect(tab.locator("#trend thead")).to_contain_text("2025-01-02")
+    tab.click("text=All calibrations")
+    expect(tab.locator("#calibrations")).to_be_visible()
