@@ -1,4 +1,4 @@
-"""What the records tell on the page: past alarms, what stands behind a part, calibrations over years."""
+"""Records on the page: past alarms, what stands behind a part, calibrations over the years."""
 
 import re
 import sqlite3
