@@ -98,9 +98,14 @@ class PageServer(uvicorn.Server):
         sys.stdout.flush()
 
 
-def page_server(settings: PageSettings) -> tuple[uvicorn.Server, socket.socket]:
-    """The server, and its socket, which takes connections already; raises ``PageCannotServe``."""
-    listener = _listener(settings)
+def page_server(
+    settings: PageSettings, *, take_timeout_ms: int = TAKE_TIMEOUT_MS
+) -> tuple[uvicorn.Server, socket.socket]:
+    """The server, and its socket, which takes connections already; raises ``PageCannotServe``.
+
+    ``take_timeout_ms``: how long a browser may take nothing.
+    """
+    listener = _listener(settings, take_timeout_ms)
     config = uvicorn.Config(
         hmi_app(settings),
         log_config=None,
@@ -120,7 +125,7 @@ def url_of(listener: socket.socket) -> str:
     return f"http://[{host}]:{port}/" if ":" in host else f"http://{host}:{port}/"
 
 
-def _listener(settings: PageSettings) -> socket.socket:
+def _listener(settings: PageSettings, take_timeout_ms: int) -> socket.socket:
     family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
     listener = socket.socket(family, socket.SOCK_STREAM)
     try:
@@ -128,7 +133,7 @@ def _listener(settings: PageSettings) -> socket.socket:
         # Both go on to the connections. A browser that stops reading must neither fill memory nor
         # stay: uvicorn alone waits for it as long as it likes.
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SEND_BUFFER)
-        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, TAKE_TIMEOUT_MS)
+        listener.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, take_timeout_ms)
         listener.bind((settings.host, settings.port))
         listener.listen(CONNECTIONS)
     except OSError as error:

@@ -22,9 +22,9 @@ class Register(Form):
 class RegisterList(Form):
     """The register map with its values; the cell says them anew every 3 s."""
 
-    line_alive: bool
+    line_alive: bool | None
     """The heartbeat of the line PLC is there."""
-    control: str
+    control: str | None
     """`line` while the line PLC is in control, else `shared`."""
     heartbeat_age_s: float | None
     """Time since the heartbeat of the line changed; null where it never did."""
@@ -34,8 +34,8 @@ class RegisterList(Form):
 def register_list(snapshot: Mapping[str, Any], registers: tuple[Register, ...]) -> RegisterList:
     """All of them with the state of the line."""
     return RegisterList(
-        line_alive=snapshot["line_alive"],
-        control=snapshot["control"],
+        line_alive=snapshot.get("line_alive"),
+        control=snapshot.get("control"),
         heartbeat_age_s=snapshot.get("daemon", {}).get("line_beat_age_s"),
         registers=registers,
     )

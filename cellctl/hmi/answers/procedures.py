@@ -54,7 +54,7 @@ def procedure_told(
 ) -> ProcedureTold:
     """One of the description's procedures; all in one language."""
     stage = _stage(one["number"], snapshot)
-    run, begun = snapshot["run"], stage != "at rest"
+    run, begun = snapshot.get("run", {}), stage != "at rest"
     return ProcedureTold(
         number=one["number"],
         name=one["name"],
@@ -63,17 +63,17 @@ def procedure_told(
         then=tuple(one.get("then", ())),
         renews=tuple(_renewed(kind, description) for kind in one.get("renews", ())),
         stage=stage,
-        progress=snapshot["step"]["text"] if stage == "under way" else "",
-        run=(run["number"] or None) if begun else None,
-        result=run["result"] if stage == "ended" else "",
+        progress=snapshot.get("step", {}).get("text", "") if stage == "under way" else "",
+        run=(run.get("number") or None) if begun else None,
+        result=run.get("result", "") if stage == "ended" else "",
     )
 
 
 def _stage(number: int, snapshot: Mapping[str, Any]) -> Stage:
-    mine = snapshot["mode"] == "MAINTENANCE" and snapshot["run"]["recipe"] == number
-    if not mine or snapshot["state"] == "IDLE":
+    recipe, state = snapshot.get("run", {}).get("recipe"), snapshot.get("state")
+    if snapshot.get("mode") != "MAINTENANCE" or recipe != number or state in (None, "IDLE"):
         return "at rest"
-    return "ended" if snapshot["state"] in AT_REST else "under way"
+    return "ended" if state in AT_REST else "under way"
 
 
 def _renewed(kind: str, description: Mapping[str, Any]) -> Renewed:

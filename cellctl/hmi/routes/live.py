@@ -42,7 +42,7 @@ async def description(request: Request, _visitor: Asked, language: Language) -> 
 @router.get("/permitted")
 async def permitted(request: Request, visitor: Asked, language: Language) -> dict[str, Permission]:
     """By command: code 0 if the cell would take it now from whoever asks, else why not."""
-    return permissions(visitor, fresh(request)["permitted"], language)
+    return permissions(visitor, fresh(request).get("permitted", {}), language)
 
 
 @router.get("/health")

@@ -17,7 +17,7 @@ from cellctl.api.local_socket.messages import Answer, PageCommand, Request, Take
 from cellctl.api.local_socket.server import LocalServer
 from cellctl.api.local_socket.socket_file import SocketFile
 from cellctl.clock import now_s
-from cellctl.hmi.main import page_server, url_of
+from cellctl.hmi.main import TAKE_TIMEOUT_MS, page_server, url_of
 from cellctl.hmi.settings import load_settings
 
 PIN = "123456"
@@ -177,9 +177,10 @@ def serving(path: Path, daemon: PaperDaemon) -> Iterator[None]:
 
 
 @contextmanager
-def page_thread(settings: Path) -> Iterator[str]:
+def page_thread(settings: Path, take_timeout_ms: int = TAKE_TIMEOUT_MS) -> Iterator[str]:
     """The page's server with these settings in a thread, and its address."""
-    server, listener = page_server(load_settings(settings))
+    found = load_settings(settings)
+    server, listener = page_server(found, take_timeout_ms=take_timeout_ms)
     thread = threading.Thread(target=lambda: asyncio.run(server.serve(sockets=[listener])))
     thread.start()
     try:

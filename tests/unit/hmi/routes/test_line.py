@@ -4,6 +4,7 @@ from typing import Any
 
 import pytest
 
+from cellctl.clock import now_s
 from tests.unit.hmi.in_process import Api
 
 
@@ -45,7 +46,7 @@ async def test_one_register_by_its_name(api: Api) -> None:
 
 @pytest.mark.parametrize("path", ["plc/registers", "plc/registers/state", "procedures"])
 async def test_what_the_cell_said_long_ago_is_no_answer(api: Api, path: str) -> None:
-    api.parts.hub.snapshot["mono_s"] -= 2.0
+    api.parts.hub.snapshot["mono_s"] = now_s() - 2.0
     reply = await api.get(path)
     assert (reply.status, reply.json["type"]) == (503, "urn:cellctl:daemon-away")
     assert reply.headers["retry-after"] == "1"
