@@ -33,10 +33,9 @@ async def calibrations(
     `/description` has those that the cell has now, missing ones included.
     """
     parts = request.app.state.parts
-    kept = await parts.archive.ask(lambda store: store.calibrations())
+    kept = await parts.archive.ask(lambda store: store.calibrations(search.kind, search.limit))
     cell = CellCalibrations(parts.hub.description)
-    wanted = [one for one in kept if search.kind in ("", one.kind)][: search.limit]
-    return CalibrationList(calibrations=tuple(cell.told(one) for one in wanted))
+    return CalibrationList(calibrations=tuple(cell.told(one) for one in kept))
 
 
 @router.get("/calibrations/{id}")

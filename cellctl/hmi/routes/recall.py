@@ -17,6 +17,7 @@ from cellctl.hmi.answers.recall import (
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.parameters import MOST, CalibrationId
 from cellctl.hmi.words.languages import Language
+from cellctl.records.entries import RunRecord
 from cellctl.records.parts import RUNS_OF_A_PART
 from cellctl.records.run_filter import RunFilter
 from cellctl.records.store import RunStore
@@ -81,19 +82,19 @@ async def behind(
         heads = store.runs(RUNS_OF_A_PART, serial=serial)
         heads += store.runs(RUNS_OF_A_PART, mate_serial=serial)
         numbers = sorted({head.number for head in heads}, reverse=True)
-        kept = {one.id: one for one in store.calibrations()} if numbers else {}
+        records = [store.run(number) for number in numbers]
+        used = {one for record in records for one in record.head.calibration_ids.values()}
+        kept = {one.id: one for one in map(store.calibration, used) if one is not None}
         return tuple(
-            run_behind(
-                record,
-                kept,
-                cell,
-                language,
-                as_sealed=store.is_as_sealed(record.head.number) if record.head.ended else None,
-            )
-            for record in map(store.run, numbers)
+            run_behind(record, kept, cell, language, as_sealed=_as_sealed(store, record))
+            for record in records
         )
 
     runs = await parts.archive.ask(read)
     if not runs:
         raise Problem(404, "serial-unknown", "no run has a part of this serial number")
     return SerialRecall(serial=serial, runs=runs)
+
+
+def _as_sealed(store: RunStore, record: RunRecord) -> bool | None:
+    return store.is_as_sealed(record.head.number) if record.seal else None

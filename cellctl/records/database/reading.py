@@ -50,10 +50,12 @@ from cellctl.records.trend import Sample
 T = TypeVar("T")
 
 
-def calibrations(session: Session) -> list[Calibration]:
-    """Every calibration that was ever stored, newest first."""
-    found = session.scalars(select(CalibrationRow).order_by(CalibrationRow.made.desc()))
-    return [to_entry(row, Calibration) for row in found]
+def calibrations(session: Session, kind: str = "", limit: int | None = None) -> list[Calibration]:
+    """Every calibration that was ever stored, or the newest ones, of one kind; newest first."""
+    query = select(CalibrationRow).order_by(CalibrationRow.made.desc()).limit(limit)
+    if kind:
+        query = query.where(CalibrationRow.kind == kind)
+    return [to_entry(row, Calibration) for row in session.scalars(query)]
 
 
 def audit_log(session: Session) -> list[AuditEntry]:

@@ -28,10 +28,10 @@ class StoredRecords:
         with self._database.read() as session:
             return reading.newest_time(session)
 
-    def calibrations(self) -> list[Calibration]:
-        """Every calibration that was ever stored, newest first."""
+    def calibrations(self, kind: str = "", limit: int | None = None) -> list[Calibration]:
+        """Every calibration that was ever stored, or the newest ones, of one kind; newest first."""
         with self._database.read() as session:
-            return reading.calibrations(session)
+            return reading.calibrations(session, kind, limit)
 
     def audit_log(self) -> list[AuditEntry]:
         """Every entry of the audit log, oldest first."""
