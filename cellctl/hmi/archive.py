@@ -70,7 +70,7 @@ class ArchiveReader:
                 "gauges": gauges,
                 "files": [_plain(asdict(one)) for one in record.artefacts],
                 "sealed": record.seal is not None,
-                "as_sealed": store.is_as_sealed(number) if record.seal else None,
+                "as_sealed": store.is_as_sealed(number) if record.head.result else None,
             }
 
         return await self.ask(read)

@@ -97,4 +97,5 @@ async def behind(
 
 
 def _as_sealed(store: RunStore, record: RunRecord) -> bool | None:
-    return store.is_as_sealed(record.head.number) if record.seal else None
+    # By the result and not by the seal: a closed run whose seal is gone is not as it was sealed.
+    return store.is_as_sealed(record.head.number) if record.head.result else None

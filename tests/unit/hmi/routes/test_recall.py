@@ -55,4 +55,7 @@ async def test_a_run_that_somebody_has_changed_is_not_as_it_was_sealed(
     assert (await api.get("runs/1")).json["as_sealed"] is False
     (*_, own) = (await api.get("recall/serials/DECK-1")).json["runs"]
     assert own["as_sealed"] is False
+    with closing(sqlite3.connect(store / FILE)) as database, database:
+        database.execute("DELETE FROM ledger WHERE kind = 'run' AND subject = 2")
+    assert (await api.get("runs/2")).json["as_sealed"] is False, "its seal is gone"
     assert (await api.get("runs/3")).json["as_sealed"] is None, "an open run has no seal yet"
