@@ -51,7 +51,7 @@ def worded(routes: Iterable[BaseRoute]) -> None:
 
 def operation_id(route: APIRoute) -> str:
     """Name of an operation for programs that are made of the document: ``get_runs_number``."""
-    (method,) = route.methods
+    (method,) = route.methods or {""}
     path = route.path_format.removeprefix("/api/v1/")
     words = "".join(c if c.isalnum() else " " for c in path).split()
     return "_".join([method.lower(), *words])

@@ -78,7 +78,7 @@ def _stage(number: int, snapshot: Mapping[str, Any]) -> Stage:
 
 def _renewed(kind: str, description: Mapping[str, Any]) -> Renewed:
     found = (one for one in description.get("calibrations", ()) if one["kind"] == kind)
-    one = next(found, {})
+    one: Mapping[str, Any] = next(found, {})
     return Renewed(
         kind=kind,
         made=one.get("made"),

@@ -64,11 +64,9 @@ class Api:
         await self.parts.hub.take(as_line({"kind": "description", **described}))
 
     async def get(self, path: str, **headers: str) -> Reply:
-        return await self.ask("GET", f"/api/v1/{path}", **headers)
+        return await self.ask("GET", f"/api/v1/{path}", b"", **headers)
 
-    async def ask(
-        self, method: str, path: str, body: bytes = b"", *, peer: str = "127.0.0.1", **headers: str
-    ) -> Reply:
+    async def ask(self, method: str, path: str, body: bytes = b"", **headers: str) -> Reply:
         """Headers with underscores for dashes."""
         given = {"host": HOST, "content-type": "application/json", "origin": f"http://{HOST}"}
         given |= {"content-length": str(len(body))}
@@ -83,7 +81,7 @@ class Api:
             "raw_path": raw.encode(),
             "query_string": query.encode(),
             "headers": [(n.encode("latin-1"), v.encode("latin-1")) for n, v in given.items()],
-            "client": (peer, 50000),
+            "client": ("127.0.0.1", 50000),
             "server": ("127.0.0.1", 8080),
         }
         return await answered(self._served, scope, body)

@@ -69,6 +69,7 @@ def test_what_the_cell_says_is_told_in_chinese(page: Client, paper: PaperDaemon)
     assert shown["step"]["label"] == label("mate", "zh")
     refusal = page_words("zh")[f"reject_{int(code)}"]
     assert shown["permitted"]["start"]["reason"] == refusal
+    page.sign_in("boris")
     assert page.get("permitted", Accept_Language="zh").json == shown["permitted"]
     page.until(lambda: "identify" in str(page.get("description").json))
     described = page.get("description", Accept_Language="zh").json
