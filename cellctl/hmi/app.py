@@ -116,6 +116,8 @@ def routes(settings: PageSettings) -> FastAPI:
         openapi_url="/api/v1/openapi.json",
         docs_url=None,
         redoc_url=None,
+        # A redirection names an address as this process sees it, which a proxy may have changed.
+        redirect_slashes=False,
         lifespan=following,
         responses=RESPONSES,
     )

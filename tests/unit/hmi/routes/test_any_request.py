@@ -154,6 +154,12 @@ def test_any_request_has_an_answer(asked: Asked, data: st.DataObject) -> None:
         told(reply)
 
 
+@pytest.mark.parametrize("path", ["/api/v1/commands/", "/api/v1/runs/", "/api/v1", "/api/v1/"])
+def test_an_address_that_is_nearly_one_leads_nowhere(asked: Asked, path: str) -> None:
+    reply = asked.answer("GET", path, b"", {})
+    assert (reply.status, reply.headers["content-type"]) == (404, MEDIA_TYPE)
+
+
 @pytest.mark.parametrize("method", ["PUT", "PATCH", "TRACE", "HEAD"])
 def test_no_address_has_another_method(asked: Asked, method: str) -> None:
     for path in {path for _, path, _ in operations(asked.api)}:
