@@ -158,6 +158,21 @@ class ResultOutOfLimits(CalibrationError):
     remedy = "See the figures in the detail and the picture; repeat the calibration."
 
 
+class MeasuredBeyondBound(CalibrationError):
+    """A good measurement exceeds an upper bound that recipe or settings state."""
+
+    number = 615
+    text = "A measurement is beyond the bound of the recipe"
+    cause = (
+        "The arm stops later, or arm and parts are stiffer, than recipe or settings state; or this "
+        "PC was too busy while it was measured."
+    )
+    remedy = (
+        "See the figure in the detail. Find what has changed, or state a greater bound and lower "
+        "the speeds that rest on it; then measure again. Until then production does not start."
+    )
+
+
 class AxisMotionInvalid(CalibrationError):
     """The stops of an axis are not a turn of that axis alone."""
 

@@ -36,6 +36,8 @@ POLL_S = 0.01
 START_TIMEOUT_S = 2.0
 END_TIMEOUT_S = 5.0
 SIGMA_MS = 15.0
+UPPER_BOUND = "upper bound"
+"""Name of the check that holds the result against what every recipe is safe with."""
 METHOD = "overrun against speed"
 """Name of the method in the record, which tells it from those of other procedures."""
 RESIDUAL_MM = 0.15
@@ -107,13 +109,14 @@ async def measure_stop_latency_on_cell(
         warnings=(),
         picture_png=await workers.run(latency_picture, *data, checks),
         serial_number="",
+        bounds=frozenset({UPPER_BOUND}),
     )
 
 
 def _checks(estimate: LatencyEstimate, bound_ms: float) -> Checks:
     """The verdict; ``bound_ms``: what every recipe is safe with while this result is not valid."""
     return (
-        LimitCheck("upper bound", estimate.upper_s * 1e3, bound_ms, "ms"),
+        LimitCheck(UPPER_BOUND, estimate.upper_s * 1e3, bound_ms, "ms"),
         LimitCheck("sigma", estimate.sigma_s * 1e3, SIGMA_MS, "ms"),
         LimitCheck("residual", estimate.residual_m / MM, RESIDUAL_MM, "mm"),
     )

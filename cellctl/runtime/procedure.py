@@ -48,6 +48,10 @@ class ProcedureOutcome:
     picture_png: bytes | None
     serial_number: str
     """Serial number of the instrument that was calibrated."""
+    bounds: frozenset[str] = frozenset()
+    """Names of the checks of its record that hold it against an upper bound of recipe or settings.
+    Where these alone fail, the measurement is good and the bound is not: production then starts
+    neither with the bound nor with what was stored before."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -131,6 +131,19 @@ class CalibrationStore:
             self._validity.forget(name)
         return [one for name in found if (one := self._readable(name)) is not None]
 
+    def refute(self, kind: CalibrationKind[Any], reason: str) -> StoredCalibration | None:
+        """Mark one calibration as invalid whether it was ever made or not; what it was.
+
+        For a measurement that contradicts what stands in for it: production starts neither with
+        the earlier result nor with the bound of the recipe until a new one passes. Raises
+        ``CalibrationNotStored``.
+        """
+        for tell in self.on_invalidated:
+            tell()
+        mark_invalid(self.path, kind.name, reason, self._now())
+        self._validity.forget(kind.name)
+        return self._readable(kind.name)
+
     def put_aside(
         self, kind: CalibrationKind[Any], record: Mapping[str, Any], picture_png: bytes | None
     ) -> Path:

@@ -7,13 +7,14 @@ from collections.abc import Iterator
 from cellctl import log
 from cellctl.calibration.checks import Checks, checks_from_record
 from cellctl.errors import CellError
-from cellctl.errors.calibration import CalibrationNotStored, ResultOutOfLimits
+from cellctl.errors.calibration import CalibrationNotStored, MeasuredBeyondBound, ResultOutOfLimits
 from cellctl.errors.records import RecordsError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import Figure, RunResult
 from cellctl.records.figures import Limit, figure
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
+from cellctl.runtime.invalidation import refute
 from cellctl.runtime.jobs.job import Job
 from cellctl.runtime.jobs.record import JobRecord
 from cellctl.runtime.procedure import Procedure, ProcedureContext, ProcedureOutcome
@@ -65,7 +66,7 @@ class MaintenanceJob(Job):
     async def execute(self) -> None:
         """Run the procedure, from its beginning again when a Hold has spoilt its measurements.
 
-        Raises ``ResultOutOfLimits`` when the verdict is bad.
+        Raises ``ResultOutOfLimits`` or ``MeasuredBeyondBound`` when the verdict is bad.
         """
         # From the beginning and not from where it was: boards, heads or payload may have been moved
         # during the Hold.
@@ -101,7 +102,8 @@ class MaintenanceJob(Job):
     async def _keep(self, outcome: ProcedureOutcome) -> None:
         """Store a result that passed; put a bad one aside for whoever looks for the reason.
 
-        Raises ``CalibrationNotStored``, ``ResultOutOfLimits`` or ``RecordNotWritten``.
+        Raises ``CalibrationNotStored``, ``ResultOutOfLimits``, ``MeasuredBeyondBound`` or
+        ``RecordNotWritten``.
         """
         for warning in outcome.warnings:
             _log.warning("calibration", item=outcome.kind.name, warning=warning)
@@ -111,7 +113,12 @@ class MaintenanceJob(Job):
             # Kept, so that somebody can see from its picture and residuals why it failed. A disk
             # that refuses it must not hide the verdict.
             aside = await self._put_aside(outcome)
-            raise ResultOutOfLimits(f"{outcome.kind.name}: {reasons}; {aside}")
+            detail = f"{outcome.kind.name}: {reasons}; {aside}"
+            if not _refutes_bound(outcome):
+                raise ResultOutOfLimits(detail)
+            fault = MeasuredBeyondBound(detail)
+            await refute(outcome.kind, fault, self._calibrations, self._store)
+            raise fault
         # The folder is what production reads, so it comes before the run store, which only keeps
         # the history.
         stored = await asyncio.to_thread(
@@ -161,6 +168,15 @@ def _figures(outcome: ProcedureOutcome) -> Iterator[Figure]:
 def _checks(outcome: ProcedureOutcome) -> Checks:
     # What a process of another package gives need not have any.
     return checks_from_record(outcome.record.get("checks", ()))
+
+
+def _refutes_bound(outcome: ProcedureOutcome) -> bool:
+    """Whether the measurement is good but for the bounds that it exceeds.
+
+    Where something else fails too, the measurement itself is in doubt and refutes nothing.
+    """
+    failed = {check.name for check in _checks(outcome) if not check.passed}
+    return bool(failed) and failed <= outcome.bounds
 
 
 def _failed_checks(outcome: ProcedureOutcome) -> list[str]:

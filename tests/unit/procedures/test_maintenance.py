@@ -2,13 +2,18 @@
 
 import json
 from dataclasses import replace
+from datetime import timedelta
 
 import pytest
 
 from cellctl.calibration.store.envelope import read_calibration
-from cellctl.errors.calibration import ResultOutOfLimits
+from cellctl.errors.calibration import (
+    CalibrationInvalidated,
+    MeasuredBeyondBound,
+    ResultOutOfLimits,
+)
 from cellctl.errors.records import RecordNotWritten
-from cellctl.processes.deck_to_frame.calibrations import STEREO_HEAD_1
+from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, STEREO_HEAD_1, STOP_LATENCY
 from cellctl.records.entries import RunResult, Verdict
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
@@ -134,6 +139,63 @@ async def test_a_bad_result_keeps_its_reason_when_it_cannot_be_put_aside(
     procedure.append(outcome(rig, passed=False))
     with pytest.raises(ResultOutOfLimits, match=r"rms 0\.31, limit 0\.2 px; and not kept"):
         await rig.job(101).execute()
+
+
+LATENCY_CHECKS = [
+    {"name": "upper bound", "value": 313.7, "limit": 300.0, "unit": "ms", "passed": False},
+    {"name": "sigma", "value": 4.0, "limit": 15.0, "unit": "ms", "passed": True},
+]
+
+
+WITHIN_BOUND = {"upper_ms": 292.0, "verdict": "pass", "checks": []}
+
+
+def beyond_bound(*, noisy: bool = False) -> ProcedureOutcome:
+    bound, sigma = LATENCY_CHECKS
+    checks = [bound, {**sigma, "value": 20.0, "passed": False} if noisy else sigma]
+    record = {"upper_ms": 313.7, "checks": checks}
+    bounds = frozenset({"upper bound"})
+    return ProcedureOutcome(STOP_LATENCY, record, False, (), None, "", bounds)
+
+
+@pytest.mark.parametrize("made_before", [True, False])
+async def test_a_bound_that_a_measurement_refutes_is_not_started_with(
+    rig: ProcedureRig, procedure: list[object], made_before: bool
+) -> None:
+    """Neither with the bound nor with the smaller figure that was stored before."""
+    calibrations = rig.bench.calibrations
+    if made_before:
+        calibrations.store(STOP_LATENCY, WITHIN_BOUND, "", timedelta(days=1))
+    assert calibrations.fault(CALIBRATIONS, timedelta(hours=1)) is None
+    procedure.append(beyond_bound())
+    with pytest.raises(MeasuredBeyondBound, match=r"upper bound 313\.7, limit 300 ms"):
+        await rig.job(101).execute()
+    refused = calibrations.fault(CALIBRATIONS, timedelta(hours=1))
+    assert isinstance(refused, CalibrationInvalidated)
+    assert "F615" in refused.detail
+    known = await rig.archive.do(RunStore.calibrations)
+    assert [one.kind for one in known if one.invalidated] == ["stop_latency"] * made_before
+    assert (await rig.audit())[-1][1] == "calibrations invalidated"
+
+
+async def test_a_new_result_within_the_bound_lifts_that(
+    rig: ProcedureRig, procedure: list[object]
+) -> None:
+    calibrations = rig.bench.calibrations
+    procedure += [beyond_bound(), replace(beyond_bound(), record=WITHIN_BOUND, passed=True)]
+    with pytest.raises(MeasuredBeyondBound):
+        await rig.job(101).execute()
+    await rig.job(101).execute()
+    assert calibrations.fault(CALIBRATIONS, timedelta(hours=1)) is None
+
+
+async def test_a_doubtful_measurement_refutes_no_bound(
+    rig: ProcedureRig, procedure: list[object]
+) -> None:
+    procedure.append(beyond_bound(noisy=True))
+    with pytest.raises(ResultOutOfLimits, match="sigma 20"):
+        await rig.job(101).execute()
+    assert rig.bench.calibrations.fault(CALIBRATIONS, timedelta(hours=1)) is None
 
 
 async def test_a_procedure_that_was_held_begins_again(

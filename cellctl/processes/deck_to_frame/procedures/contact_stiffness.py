@@ -13,6 +13,7 @@ from cellctl.processes.deck_to_frame.moves.move_to_start import move_to_start
 from cellctl.processes.deck_to_frame.moves.taught_poses import main_to_home
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness_picture import stiffness_picture
 from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import (
+    STIFFNESS,
     stiffness_checks,
     stiffness_record,
 )
@@ -67,6 +68,7 @@ async def measure_contact_stiffness_on_cell(
         warnings=(),
         picture_png=await cell.workers.run(stiffness_picture, measured, checks),
         serial_number="",
+        bounds=frozenset({STIFFNESS}),
     )
 
 

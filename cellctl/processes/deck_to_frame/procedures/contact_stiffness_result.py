@@ -19,6 +19,10 @@ SPREAD_MM = 0.06
 """Largest spread of the travels at which the contacts begin: about the repeatability of an arm."""
 
 
+STIFFNESS = "stiffness"
+"""Name of the check that holds the result against the bound of the recipe."""
+
+
 def stiffness_checks(measured: ContactStiffness, mating: Mating) -> Checks:
     """The verdict: does it repeat, is it a line, does the recipe's bound hold?"""
     estimate = measured.estimate
@@ -26,7 +30,7 @@ def stiffness_checks(measured: ContactStiffness, mating: Mating) -> Checks:
     peak_n = max(contact.statistics.peak_filtered_fz_n for contact in measured.contacts)
     percent = 100.0 * estimate.sigma_n_m / estimate.stiffness_n_m
     return (
-        LimitCheck("stiffness", estimate.stiffness_n_m * MM, mating.stiffness_n_per_mm, "N/mm"),
+        LimitCheck(STIFFNESS, estimate.stiffness_n_m * MM, mating.stiffness_n_per_mm, "N/mm"),
         LimitCheck("relative sigma", percent, SIGMA_PERCENT, "%"),
         LimitCheck("residual", estimate.residual_n, RESIDUAL_N, "N"),
         LimitCheck("spread of the touch points", float(np.ptp(starts_mm)), SPREAD_MM, "mm"),

@@ -10,7 +10,12 @@ from cellctl.processes.peg_in_hole.procedures.after_the_face import after_the_fa
 from cellctl.processes.peg_in_hole.procedures.contact_loop_picture import loop_picture
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.record import keys
-from cellctl.processes.peg_in_hole.record.loop_record import loop_checks, loop_record
+from cellctl.processes.peg_in_hole.record.loop_record import (
+    DEAD_TIME,
+    STIFFNESS,
+    loop_checks,
+    loop_record,
+)
 from cellctl.processes.peg_in_hole.search.face import CLEAR_M
 from cellctl.processes.peg_in_hole.state import FaceTouched
 from cellctl.processes.peg_in_hole.stations import PegCell
@@ -45,6 +50,7 @@ async def measure_loop_on_cell(
         warnings=(),
         picture_png=await cell.cell.workers.run(loop_picture, found, checks),
         serial_number="",
+        bounds=frozenset({STIFFNESS, DEAD_TIME}),
     )
 
 

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 SIGMA_PERCENT = 10.0
 HYSTERESIS_MM = 0.02
 """About the repeatability of an arm: more is play in fingers or fixture."""
+STIFFNESS, DEAD_TIME = "stiffness", "dead time"
+"""Names of the checks that hold the result against the bounds of the settings."""
 _MS = 1e-3
 _METHOD = "readings at standstill, chirp and steps on the face beside the hole"
 
@@ -23,8 +25,8 @@ def loop_checks(found: "CommissionedLoop", bounds: PegSettings) -> Checks:
     figures, fit = found.figures, found.stiffness
     percent = 100.0 * fit.sigma_n_m / fit.stiffness_n_m
     return (
-        LimitCheck("stiffness", figures.stiffness_n_m * MM, bounds.stiffness_n_mm, "N/mm"),
-        LimitCheck("dead time", figures.dead_time_s / _MS, bounds.dead_time_ms, "ms"),
+        LimitCheck(STIFFNESS, figures.stiffness_n_m * MM, bounds.stiffness_n_mm, "N/mm"),
+        LimitCheck(DEAD_TIME, figures.dead_time_s / _MS, bounds.dead_time_ms, "ms"),
         LimitCheck("relative sigma of the stiffness", percent, SIGMA_PERCENT, "%"),
         LimitCheck("reading off the line", fit.hysteresis_m / MM, HYSTERESIS_MM, "mm"),
     )
