@@ -113,10 +113,10 @@ class MaintenanceJob(Job):
             # Kept, so that somebody can see from its picture and residuals why it failed. A disk
             # that refuses it must not hide the verdict.
             aside = await self._put_aside(outcome)
-            detail = f"{outcome.kind.name}: {reasons}; {aside}"
+            why = f"{outcome.kind.name}: {reasons}; {aside}"
             if not _refutes_bound(outcome):
-                raise ResultOutOfLimits(detail)
-            fault = MeasuredBeyondBound(detail)
+                raise ResultOutOfLimits(why)
+            fault = MeasuredBeyondBound(why)
             await refute(outcome.kind, fault, self._calibrations, self._store)
             raise fault
         # The folder is what production reads, so it comes before the run store, which only keeps
