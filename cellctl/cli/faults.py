@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from cellctl.errors import CellError
-from cellctl.errors.base import Reaction
+from cellctl.errors.base import Reaction, fault_number
 from cellctl.fault_catalogue import known_faults
 from cellctl.translations import fault_words
 
@@ -45,7 +45,12 @@ _PARTS = {
     Language.CHINESE: ("原因：", "处理：", "反应："),
 }
 
-Number = Annotated[int | None, typer.Argument(help="Number of a fault, without the F.")]
+Number = Annotated[
+    int | None,
+    typer.Argument(
+        parser=fault_number, help="Number of a fault, such as F529 or 529.", metavar="NUMBER"
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 Lang = Annotated[
     Language, typer.Option("--lang", help="Plug-ins without words in it are told in English.")

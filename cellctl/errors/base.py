@@ -40,6 +40,17 @@ class CellError(Exception):
         return f"{head}: {self.detail}" if self.detail else head
 
 
+def fault_number(written: str | int) -> int:
+    """The number of a fault as people write it: ``F529``, ``f529`` or ``529``.
+
+    Raises ``ValueError``.
+    """
+    digits = str(written).removeprefix("F").removeprefix("f")
+    if not digits.isdecimal():
+        raise ValueError(f"{written!r} is no number of a fault, such as F529")
+    return int(digits)
+
+
 def catalogue(root: type[CellError] = CellError) -> list[type[CellError]]:
     """Every numbered fault below ``root``, by number, from the modules that are imported.
 

@@ -8,6 +8,7 @@ from cellctl.api.local_socket.messages import AcknowledgeCommand, made
 from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
+from cellctl.errors.base import fault_number
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 
@@ -29,7 +30,12 @@ def list_alarms(context: typer.Context, socket: SocketOption = None) -> None:
 
 @app.command()
 def acknowledge(
-    number: Annotated[int, typer.Argument(help="Number of the fault, without the F.")],
+    number: Annotated[
+        int,
+        typer.Argument(
+            parser=fault_number, help="Number of the fault, such as F529 or 529.", metavar="NUMBER"
+        ),
+    ],
     socket: SocketOption = None,
 ) -> None:
     """Acknowledge every alarm with this number; it releases no fault and moves nothing."""

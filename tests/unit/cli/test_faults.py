@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
@@ -21,6 +22,18 @@ def test_one_fault_has_its_cause_and_remedy() -> None:
     for words in ("F207", fault.text, fault.cause, fault.remedy, fault.reaction.value):
         assert words in text
     assert "F206" not in text
+
+
+@pytest.mark.parametrize("written", ["F207", "f207"])
+def test_a_number_is_taken_as_people_write_it(written: str) -> None:
+    assert said(written) == said("207")
+
+
+@pytest.mark.parametrize("written", ["G207", "F", "20.7", "two"])
+def test_what_is_no_number_is_refused(written: str) -> None:
+    done = CliRunner().invoke(whole_app(), ["faults", written])
+    assert done.exit_code == 2
+    assert "such as F529" in done.output
 
 
 def test_one_fault_is_told_in_chinese() -> None:

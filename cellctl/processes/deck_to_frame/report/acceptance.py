@@ -26,8 +26,8 @@ _MATING = {
     keys.PEAK_FORCE: "greatest force along the approach, single samples",
     keys.FORCE_WHILE_VERIFIED: "greatest force along the approach while the seat was verified",
     "peak_filtered_force": "greatest force along the approach, mean of 5 ms",
-    "peak_lateral": "greatest lateral force, single samples",
-    "peak_moment": "greatest moment, single samples",
+    "peak_lateral": "greatest lateral force, single samples, with the guard's margin",
+    "peak_moment": "greatest moment, single samples, with the guard's margin",
 }
 _SEATED = {
     keys.PIN_OFFSETS: "lateral offset at the pin holes",

@@ -98,7 +98,7 @@ def test_parameters_arrive(daemon: Agreeable) -> None:
     assert cellctl("start", "--serial", "S-1", "--recipe", "panel", "--dry-run").exit_code == 0
     assert cellctl("procedure", "107", "--wait").exit_code == 0
     assert cellctl("mode", "maintenance").exit_code == 0
-    assert cellctl("alarms", "acknowledge", "202").exit_code == 0
+    assert cellctl("alarms", "acknowledge", "F202").exit_code == 0
     assert daemon.asked == [
         StartCommand(serial="S-1", recipe="panel", dry_run=True),
         ProcedureCommand(number=107, serial="PROCEDURE-107"),
