@@ -155,7 +155,9 @@ class LiveView:
         # an arm may press rests on the newest sample, however old: silence does not end a contact.
         felt = [*newest[:2], newest[2] + (guard.hidden_axial_n or 0.0)]
         # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
-        shown = newest if guard.in_part_frame and not stale else [math.nan] * 6
+        # With what the zero hides: half way through a Reset the change alone would read as a pull.
+        told = guard.in_part_frame and not stale
+        shown = [*felt, *newest[3:]] if told else [math.nan] * 6
         stopped = "" if guard.trip is None else str(guard.trip)
         awaited = self._unit.view.is_awaited_touch(name)
         return {

@@ -309,6 +309,18 @@ async def test_in_the_sensor_s_own_axes_only_the_magnitude_is_said(
     assert {axis.value for axis in force.wrench} == {None}
 
 
+async def test_a_force_that_the_zero_of_a_reset_hides_is_shown_with_it(
+    rig: DaemonRig, operator: Operator
+) -> None:
+    """Stopped half way, 17 N were hidden and 6 N have gone: 11 N are still pressed with."""
+    guard = rig.bench.cell.guard
+    guard.hidden_axial_n = 17.0
+    guard.raw = np.tile([0.0, 0.0, -6.0, 0.0, 0.0, 0.0], (len(guard.raw), 1))
+    (force,) = (await operator.status()).forces
+    assert force.wrench[2].value == pytest.approx(11.0)
+    assert force.presses_n == pytest.approx(11.0)
+
+
 async def test_what_a_compensation_leaves_of_a_load_is_no_contact(
     rig: DaemonRig, operator: Operator
 ) -> None:
