@@ -163,10 +163,7 @@ class MeasuredBeyondBound(CalibrationError):
 
     number = 615
     text = "A measurement is beyond the bound of the recipe"
-    cause = (
-        "The arm stops later, or arm and parts are stiffer, than recipe or settings state; or this "
-        "PC was too busy while it was measured."
-    )
+    cause = "The arm stops later or is stiffer than stated; or this PC was busy while it measured."
     remedy = (
         "See the figure in the detail. Find what has changed, or state a greater bound and lower "
         "the speeds that rest on it; then measure again. Until then production does not start."
