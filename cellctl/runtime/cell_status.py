@@ -44,6 +44,8 @@ class CellStatus:
     manual: bool = False
     force_guard_tripped: bool = False
     hold_requested: bool = False
+    safe_point_ahead: bool = True
+    """Of a run under way: a Hold takes effect before its end, as far as is known."""
     stop_not_confirmed: bool = False
     """A robot did not confirm its last stop and may still move."""
     alarms: tuple[int, ...] = ()

@@ -14,6 +14,9 @@ class Progress:
     step_label: str = ""
     contact: bool = False
     """The step deals with the trips of the guard itself."""
+    safe_point_ahead: bool = True
+    """A Hold takes effect before the run ends, as far as is known: a step that may have to go back
+    says so when it does."""
     iteration: int = 0
     error_mm_deg: tuple[float, ...] = (math.nan,) * 6
     """x, y, z in mm, rx, ry, rz in degrees of the part against its target."""
@@ -52,7 +55,7 @@ class ProgressBoard:
 
     def leave_step(self) -> None:
         """No step is under way any more; what was measured stays to be seen."""
-        self.update(step=0, step_label="", contact=False, iteration=0)
+        self.update(step=0, step_label="", contact=False, safe_point_ahead=True, iteration=0)
 
     def reset(self) -> None:
         """Back to nothing, at the start of a run."""

@@ -67,6 +67,7 @@ class StatusView:
             manual=self._any_manual(),
             force_guard_tripped=self._force_guard_tripped(),
             hold_requested=machine.hold_requested,
+            safe_point_ahead=progress.safe_point_ahead,
             stop_not_confirmed=bool(self._cell.unstopped),
             alarms=alarms,
             first_out_alarm=faults[0].number if faults else 0,

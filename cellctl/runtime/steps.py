@@ -60,6 +60,8 @@ class StepSpec(Generic[A, B]):
     contact: bool = False
     """Touches the part: a dry run ends before it, and it deals with trips of the guard itself."""
     restart: Restart = Restart.FROM_BEGINNING
+    safe_points_within: bool = False
+    """Obeys a Hold itself, between measurements or moves of its own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +78,10 @@ class Steps(Generic[A, B]):
     def then(self, step: StepSpec[B, C]) -> "Steps[A, C]":
         """The chain with one more step, which takes what the last one gives."""
         return Steps((*self.specs, step))
+
+    def safe_point_after(self, index: int) -> bool:
+        """Whether a Hold that comes in this step is obeyed before a later one."""
+        return any(step.restart is not Restart.NO_WAY_BACK for step in self.specs[index + 1 :])
 
     def before_contact(self) -> "Steps[A, Any]":
         """The steps up to the first one with contact."""
@@ -99,7 +105,7 @@ class StepRunner:
     async def run(self, steps: Steps[A, B], state: A) -> B:
         """All steps from the first one; raises ``HeldMeanwhile`` when they must begin again."""
         value: Any = state
-        for step in steps.specs:
+        for index, step in enumerate(steps.specs):
             # Before the step and not within it: between two steps nothing moves, so the robots
             # stand wherever the Hold finds them.
             if step.restart is not Restart.NO_WAY_BACK:
@@ -108,6 +114,7 @@ class StepRunner:
                 step=step.number,
                 step_label=step.label,
                 contact=step.contact,
+                safe_point_ahead=step.safe_points_within or steps.safe_point_after(index),
                 iteration=0,
                 message="",
             )

@@ -91,6 +91,9 @@ class StatusReport(StrictModel):
     ready: bool
     """Idle, and Start would be taken."""
     hold_requested: bool
+    safe_point_ahead: bool = True
+    """A Hold takes effect before the run ends, as far as is known; in a mating that comes to
+    nothing a further try may bring another safe point."""
     step: str
     iteration: int
     errors: tuple[AxisReport, ...]

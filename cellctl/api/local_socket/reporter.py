@@ -83,6 +83,7 @@ class Reporter:
             connected=unit.live,
             ready=shown.ready,
             hold_requested=shown.hold_requested,
+            safe_point_ahead=shown.safe_point_ahead,
             step=shown.step_label,
             iteration=shown.iteration,
             errors=_axes(live["errors"]),

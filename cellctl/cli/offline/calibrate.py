@@ -174,7 +174,7 @@ def tool(file: InFile, out: OutFile = None, picture: Picture = None) -> None:
     data = read_input(file, ToolFile)
     orienting = data.orienting or ()
     result = calibrate_tool(data.touching, orienting, touch_sigma_m=data.touch_sigma_m)
-    warnings = tool_mistakes(data.touching, orienting, result)
+    warnings = tool_mistakes(data.touching, result)
     _show("flange_T_tool", result.flange_T_tool)
     finish(result, warnings, out, picture, lambda: tool_picture(result))
 

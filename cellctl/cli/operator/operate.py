@@ -1,6 +1,7 @@
 """`cellctl clear|reset|start|…`: what an operator may ask of the running daemon."""
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator
+from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -22,6 +23,8 @@ from cellctl.errors.local import CommandMissedItsGoal, DaemonNotReached, StopNot
 from cellctl.errors.records import StoreUnavailable
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
+_INTERRUPTED = 130
+"""Exit code of what Ctrl-C has ended, as shells have it."""
 _ENDED = ("COMPLETED", "STOPPED", "ABORTED", "HELD")
 Wait = Annotated[
     bool,
@@ -49,7 +52,27 @@ def reset(socket: SocketOption = None) -> None:
 
 def hold(socket: SocketOption = None) -> None:
     """Pause at the next safe point."""
-    _plain(socket, "hold", ("HELD",))
+    client = DaemonClient(socket)
+    client.command(PlainCommand(request="hold"))
+    begun: set[str] = set()
+
+    def tell_late(report: StatusReport) -> None:
+        # Loaded when the command has been given, as in ``_tell``.
+        from cellctl.cli.operator.status_screen import NO_SAFE_POINT
+
+        late = report.hold_requested and not report.safe_point_ahead
+        if late and report.step not in begun:
+            typer.echo(f"{report.step}: {NO_SAFE_POINT}", err=True)
+        begun.update((report.step,) if late else ())
+
+    with _going_on("the Hold stays asked for: `cellctl unhold` goes on once it is held"):
+        # Without a time-out: how long it is to the next safe point is a matter of the step.
+        report = client.settled(timeout_s=None, seen=tell_late)
+    if report.state == "COMPLETED":
+        typer.echo("the run came to its end before a safe point; nothing is held")
+    else:
+        _arrived(report, ("HELD",))
+    _tell(report)
 
 
 def unhold(socket: SocketOption = None) -> None:
@@ -124,7 +147,9 @@ def mode(
 def _plain(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None:
     client = DaemonClient(socket)
     client.command(PlainCommand(request=name))
-    _tell(_arrived(client.settled(), goal))
+    with _going_on(f"the cell goes on with the command {name}"):
+        report = client.settled()
+    _tell(_arrived(report, goal))
 
 
 def _end_motion(socket: SocketOption, name: PlainName, goal: Collection[str]) -> None:
@@ -143,11 +168,12 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
     steps = isinstance(request, StartCommand) and request.single_step
     # "Taken" only means that the command is being executed. Starting may still fail, and the
     # operator must see that from the exit code. A run step by step holds before its first step.
-    report = _arrived(client.settled(), (*_BEGUN, "HELD") if steps else _BEGUN)
-    if wait and not (steps and report.state == "HELD"):
-        # Without a time-out, because nobody knows how long a person keeps a run on hold.
-        goal = ("COMPLETED", "HELD") if steps else ("COMPLETED",)
-        report = _arrived(client.settled(_ENDED, timeout_s=None, seen=_steps_told()), goal)
+    with _going_on("the run goes on"):
+        report = _arrived(client.settled(), (*_BEGUN, "HELD") if steps else _BEGUN)
+        if wait and not (steps and report.state == "HELD"):
+            # Without a time-out, because nobody knows how long a person keeps a run on hold.
+            goal = ("COMPLETED", "HELD") if steps else ("COMPLETED",)
+            report = _arrived(client.settled(_ENDED, timeout_s=None, seen=_steps_told()), goal)
     _tell(report)
     new = [alarm for alarm in report.alarms if (alarm.number, alarm.since) not in known]
     for alarm in new:
@@ -161,6 +187,20 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
         )
     elif wait:
         _show_result(report, dry_run=isinstance(request, StartCommand) and request.dry_run)
+
+
+@contextmanager
+def _going_on(what: str) -> Iterator[None]:
+    """Ctrl-C ends the waiting alone: whoever presses it must not believe that the arms stand."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(
+            f"only the waiting has ended, {what}; `cellctl stop` ends motion and run, "
+            "`cellctl abort` stops and latches all robots at once",
+            err=True,
+        )
+        raise typer.Exit(_INTERRUPTED) from None
 
 
 def _show_result(report: StatusReport, *, dry_run: bool) -> None:

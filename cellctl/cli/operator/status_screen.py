@@ -32,6 +32,10 @@ _NEXT = {
     "`cellctl reset`: it lifts off and clears the station",
     "HELD": "`cellctl unhold` measures anew and goes on; `cellctl stop` ends the run",
 }
+NO_SAFE_POINT = (
+    "no safe point is left before the end of the run, unless this step has to be tried again; "
+    "`cellctl stop` ends it at once"
+)
 _NEXT_AFTER_PROCEDURE = (
     "do what the guide of the procedure asks for at its end, and see that nothing hangs in an "
     "open gripper; then `cellctl reset`"
@@ -132,7 +136,8 @@ def _step(report: StatusReport) -> str:
 def _next(report: StatusReport) -> str:
     """What an operator does now, in words."""
     if report.state != report.state_requested:
-        return "wait"
+        late = report.hold_requested and not report.safe_point_ahead
+        return f"wait; the Hold comes too late: {NO_SAFE_POINT}" if late else "wait"
     if report.state == "ABORTED":
         cause = "remove the cause of the fault" if report.faults else "look why it was aborted"
         return f"{cause}, then `cellctl clear`"
@@ -144,7 +149,10 @@ def _next(report: StatusReport) -> str:
     if (report.state, report.mode) == ("COMPLETED", "MAINTENANCE"):
         # Nothing was joined: whoever opened the gripper now might drop the part that was weighed.
         return _NEXT_AFTER_PROCEDURE
-    return _NEXT.get(report.state, "wait; `cellctl hold` pauses at the next safe point")
+    hold = "`cellctl hold` pauses at the next safe point"
+    if not report.safe_point_ahead:
+        hold = f"a Hold would come too late: {NO_SAFE_POINT}"
+    return _NEXT.get(report.state, f"wait; {hold}")
 
 
 def _measured(report: StatusReport) -> list[tuple[str, Text]]:

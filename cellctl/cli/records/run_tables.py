@@ -5,6 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 import typer
+from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
@@ -22,8 +23,10 @@ from cellctl.records.report.acceptance.table import limit_text
 from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
 
-WIDE = 100
+_WIDE = 100
 """Columns from which on the list has the name of the process."""
+_UNBROKEN = 1000
+"""Columns in which every list has its place."""
 _VERDICTS = {str(Verdict.PASS): "green", str(Verdict.FAIL): "red"}
 _COLOURS = {"open": "yellow", **dict.fromkeys(GOOD_ENDS, "green")}
 
@@ -46,7 +49,7 @@ def show_record(
         typer.echo(as_plain(asdict(record) | plain))
         return
     console = console_of_tables()
-    console.print(run_table([record.head], wide=console.width >= WIDE))
+    console.print(run_table([record.head], console))
     if ended := fault_box(record, during(record, audit)):
         # Also a run that a command has ended: by whom, and in which step.
         where = f"step {ended.step}" if record.phases else ended.step
@@ -85,16 +88,33 @@ def gauge_line(record: RunRecord, entry: Gauge, entered: Sequence[AuditEntry]) -
     )
 
 
-def run_table(
-    runs: Sequence[RunHead], spoilt: Set[int] = frozenset(), *, wide: bool = True
+def run_table(runs: Sequence[RunHead], console: Console, spoilt: Set[int] = frozenset()) -> Table:
+    """One line a run, as wide as the console; ``spoilt``: runs with a good result and a gauge
+    beyond its limit."""
+    wide = console.width >= _WIDE
+    table = _run_table(runs, spoilt, wide=wide, serial_wide=None)
+    unbroken = console.options.update(width=_UNBROKEN)
+    if console.measure(table, options=unbroken).maximum <= console.width:
+        return table
+    # A serial number that is broken is read as another one; the words beside it give way.
+    longest = max(len(head.serial) for head in runs)
+    return _run_table(runs, spoilt, wide=wide, serial_wide=max(longest, len("serial")))
+
+
+def _run_table(
+    runs: Sequence[RunHead], spoilt: Set[int], *, wide: bool, serial_wide: int | None
 ) -> Table:
-    """One line a run; ``spoilt``: runs with a good result and a gauge beyond its limit."""
-    table = Table(box=None)
-    for name in ("run", "serial", "recipe", *(("process",) if wide else ())):
-        # Folded and not cut: a number that is cut is another one.
-        table.add_column(name, no_wrap=name == "run", overflow="fold")
+    """With ``serial_wide`` serial numbers have so many columns, and mode and result may break."""
+    narrow = serial_wide is not None
+    table = Table(box=None, padding=(0, 1, 0, 0) if narrow else (0, 1))
+    table.add_column("run", no_wrap=True)
+    table.add_column("serial", width=serial_wide, overflow="fold")
+    for name in ("recipe", *(("process",) if wide else ())):
+        # Folded and not cut: a name that is cut is another one.
+        table.add_column(name, overflow="fold")
     for name in ("mode", "started (UTC)", "duration", "result"):
-        table.add_column(name, no_wrap=True)
+        whole = not narrow or name in ("started (UTC)", "duration")
+        table.add_column(name, no_wrap=whole, overflow="ellipsis" if whole else "fold")
     for head in runs:
         table.add_row(*run_row(head, spoilt=head.number in spoilt, wide=wide))
     return table

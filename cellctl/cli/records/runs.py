@@ -26,7 +26,7 @@ from cellctl.cli.records.run_options import (
 )
 from cellctl.cli.records.run_report import report
 from cellctl.cli.records.run_store import DataDir, opened_store, store_folder
-from cellctl.cli.records.run_tables import WIDE, gauge_line, run_table, show_record
+from cellctl.cli.records.run_tables import gauge_line, run_table, show_record
 from cellctl.cli.records.trend import trend
 from cellctl.records.entered.said_by import BY, ENTERED, GAUGE, gauge_entries
 from cellctl.records.report.acceptance.runs_before import runs_before
@@ -75,7 +75,7 @@ def list_runs(
         return
     spoilt = {one.head.number for one in found if one.spoilt}
     console = console_of_tables()
-    console.print(run_table([one.head for one in found], spoilt, wide=console.width >= WIDE))
+    console.print(run_table([one.head for one in found], console, spoilt))
 
 
 @app.command()

@@ -39,6 +39,10 @@ STILL_RAD = float(np.radians(0.1))
 TIP_FROM_FLANGE = "tip from the flange, less than the touched point from the base"
 """Name of the check whose limit is the distance of the touched point from the base: an arm reaches
 farther than its tool is long."""
+Z_FORWARDS = "z of the tool from the way out to its tip"
+"""Name of the check that fails for a tool whose z points back to its flange."""
+_FORWARDS_DEG = 120.0
+"""A tool across the flange may point a little back; one that does by more was taught otherwise."""
 _LEAST_MOVED_M = 1e-3
 """Of the flange about a tip that stays: far less than any tool is long."""
 
@@ -127,7 +131,16 @@ def calibrate_tool(
     if orienting:
         sigma_deg, limit_deg = np.degrees((tool.sigma[3:].max(), limits.rotation_sigma_rad))
         checks += (LimitCheck("rotation sigma", float(sigma_deg), float(limit_deg), "°"),)
+        back_deg = _z_from_way_out_deg(tool.pose)
+        checks += (LimitCheck(Z_FORWARDS, back_deg, _FORWARDS_DEG, "°"),)
     return ToolResult(tool, tuple(residuals.tolist()), conditioning, checks, method)
+
+
+def _z_from_way_out_deg(flange_T_tool: RigidTransform) -> float:
+    """Angle between the z axis and the way from the flange to the tip; 0 where there is no way."""
+    z_axis, tip_m = flange_T_tool.rotation.as_matrix()[:, 2], flange_T_tool.translation
+    across, along = np.linalg.norm(np.cross(z_axis, tip_m)), z_axis @ tip_m
+    return float(np.degrees(np.arctan2(across, along)))
 
 
 def _position(

@@ -5,7 +5,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.solvers.tool.tool import TIP_FROM_FLANGE, ToolResult, calibrate_tool
+from cellctl.calibration.solvers.tool.tool import (
+    TIP_FROM_FLANGE,
+    Z_FORWARDS,
+    ToolResult,
+    calibrate_tool,
+)
 from cellctl.calibration.unit_slips import meant_in_radians
 from cellctl.errors import CellError
 from cellctl.geometry.pose import MM
@@ -15,26 +20,24 @@ _LEAST_WITHOUT = 5
 _LONGEST_M = 2.0
 """From flange to tip; longer tools no arm of this size carries."""
 
-_BACKWARDS = 0.5
-"""Cosine: a tool across the flange may point a little back, one by 120° was taught otherwise."""
 
-
-def tool_mistakes(
-    touching: Sequence[RigidTransform], orienting: Sequence[RigidTransform], result: ToolResult
-) -> tuple[str, ...]:
+def tool_mistakes(touching: Sequence[RigidTransform], result: ToolResult) -> tuple[str, ...]:
     """What is probably wrong with the poses, as warnings; empty for good ones."""
     said = []
     tip_m = np.asarray(result.flange_T_tool.pose.translation)
-    if [check.name for check in result.checks if not check.passed] == [TIP_FROM_FLANGE]:
+    failed = {check.name for check in result.checks if not check.passed}
+    # Of the axes, which say nothing of how the touches fit.
+    backwards = Z_FORWARDS in failed
+    failed -= {Z_FORWARDS}
+    if failed == {TIP_FROM_FLANGE}:
         said.append(
             "the poses are inverted (flange_T_base)? The tool would be longer than the arm reaches"
         )
-    elif not result.passed and (hint := _explanation(touching)):
+    elif failed and (hint := _explanation(touching)):
         said.append(hint)
     if np.linalg.norm(tip_m) > _LONGEST_M:
         said.append(f"the tip is {np.linalg.norm(tip_m) / MM:.0f} mm from the flange")
-    z_axis = result.flange_T_tool.pose.rotation.as_matrix()[:, 2]
-    if orienting and z_axis @ tip_m < -_BACKWARDS * float(np.linalg.norm(tip_m)):
+    if backwards:
         said.append(
             "z of the tool points from its tip back to the flange: are the second and the third "
             "of the orienting poses exchanged, or was the tip moved along -x or -y?"

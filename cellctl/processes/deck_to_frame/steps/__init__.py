@@ -12,7 +12,7 @@ from cellctl.runtime.steps import Restart, Steps, StepSpec
 MEASURE_FRAME = StepSpec(10, "measure frame", measure_frame)
 MEASURE_DECK = StepSpec(20, "measure deck", measure_deck)
 PRE_ASSEMBLY = StepSpec(30, "pre-assembly", pre_assembly)
-CORRECT_POSE = StepSpec(NUMBER, LABEL, correct_pose)
+CORRECT_POSE = StepSpec(NUMBER, LABEL, correct_pose, safe_points_within=True)
 MATE = StepSpec(50, "mate", mate_deck, contact=True)
 # The deck is on the frame, and measuring anew would begin with it in the gripper, clear of the
 # station: a Hold waits until the run has ended.

@@ -19,12 +19,17 @@ async def mate_deck(corrected: Corrected) -> Seated:
         if attempt > 1:
             # Shown to the line as the step that it is; contact comes only after it.
             mating = run.board.current
-            run.board.update(step=NUMBER, step_label=LABEL, contact=False)
+            run.board.update(step=NUMBER, step_label=LABEL, contact=False, safe_point_ahead=True)
             await phase(NUMBER, LABEL)
             latest = await correct_pose(latest)
             # The last chance for a Hold, or for a line that was lost meanwhile, before contact.
             await run.obey_hold()
-            run.board.update(step=mating.step, step_label=mating.step_label, contact=True)
+            run.board.update(
+                step=mating.step,
+                step_label=mating.step_label,
+                contact=True,
+                safe_point_ahead=mating.safe_point_ahead,
+            )
             await phase(mating.step, mating.step_label)
         # A plan for each attempt: window and speed follow from the uncertainty of the latest
         # measurement.

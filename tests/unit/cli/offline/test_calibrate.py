@@ -368,6 +368,12 @@ def test_orienting_poses_in_the_other_order_are_named(tmp_path: Path) -> None:
     data["orienting"] = [data["orienting"][index] for index in (0, 2, 1)]
     result = call("tool", "--in", save(tmp_path / "tool.json", data))
     assert "the second and the third of the orienting poses exchanged" in result.output
+    assert "FAIL  z of the tool from the way out to its tip" in result.output
+    assert "does not fit the others" not in result.output, "the touches are good"
+    assert result.exit_code == 3
+    good = call("tool", "--in", save(tmp_path / "good.json", tool_data()))
+    assert good.exit_code == 0
+    assert "ok    z of the tool from the way out to its tip" in good.output
 
 
 def test_tool(tmp_path: Path) -> None:

@@ -233,6 +233,67 @@ def test_whoever_waits_for_a_run_sees_its_steps(
     assert done.stderr.splitlines() == ["10 measure frame", "20 measure deck"]
 
 
+@pytest.mark.parametrize(
+    ("words", "leads_to", "what"),
+    [
+        (("start", "--serial", "S", "--wait"), "EXECUTE", "the run goes on"),
+        (("procedure", "107", "--wait"), "EXECUTE", "the run goes on"),
+        (("reset",), "RESETTING", "the cell goes on with the command reset"),
+        (("hold",), "EXECUTE", "the Hold stays asked for"),
+    ],
+)
+def test_ctrl_c_ends_the_waiting_alone_and_says_so(
+    daemon: Agreeable,
+    monkeypatch: pytest.MonkeyPatch,
+    words: tuple[str, ...],
+    leads_to: str,
+    what: str,
+) -> None:
+    daemon.leads_to[words[0]] = leads_to
+    daemon.on_its_way_to = "" if "--wait" in words else "IDLE"
+
+    def interrupted(_s: float) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(time, "sleep", interrupted)
+    done = cellctl(*words)
+    assert done.exit_code == 130, done.output
+    (line,) = done.stderr.splitlines()
+    assert line.startswith(f"only the waiting has ended, {what}")
+    assert "`cellctl stop` ends motion and run" in line
+    assert [request.request for request in daemon.asked] == [words[0]], "nothing was stopped"
+
+
+def test_a_hold_that_comes_too_late_says_so_and_is_no_fault(
+    daemon: Agreeable, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    daemon.leads_to["hold"], daemon.on_its_way_to = "EXECUTE", "HELD"
+    daemon.shows |= {"hold_requested": True, "safe_point_ahead": False, "step": "mate"}
+    coming = iter(("mate", "verify", "verify", ""))
+
+    def nap(_s: float) -> None:
+        if step := next(coming):
+            daemon.shows |= {"step": step}
+        else:
+            ended = {"state": "COMPLETED", "state_requested": "COMPLETED"}
+            daemon.shows |= {"step": "", "hold_requested": False, **ended}
+
+    monkeypatch.setattr(time, "sleep", nap)
+    done = cellctl("hold")
+    assert done.exit_code == 0, done.exception
+    said = "no safe point is left before the end of the run"
+    assert [line.split(",")[0] for line in done.stderr.splitlines()] == [
+        f"mate: {said}",
+        f"verify: {said}",
+    ]
+    assert "the run came to its end before a safe point; nothing is held" in done.stdout
+
+
+def test_a_hold_that_a_stop_ends_is_a_fault(daemon: Agreeable) -> None:
+    daemon.leads_to["hold"] = "STOPPED"
+    assert fault_of(cellctl("hold")) is CommandMissedItsGoal
+
+
 def test_what_takes_too_long_is_not_waited_for(
     daemon: Agreeable,
 ) -> None:
@@ -398,6 +459,16 @@ def test_the_screen_calls_an_awaited_touch_no_stop_request() -> None:
             "refused: the run store; `records` below says",
         ),
         ({"state": "EXECUTE"}, "`cellctl hold`"),
+        ({"state": "EXECUTE", "safe_point_ahead": False}, "a Hold would come too late"),
+        (
+            {
+                "state": "EXECUTE",
+                "state_requested": "HELD",
+                "hold_requested": True,
+                "safe_point_ahead": False,
+            },
+            "wait; the Hold comes too late",
+        ),
         ({"state": "HELD"}, "`cellctl unhold`"),
         ({"state": "COMPLETED"}, "open the gripper; then `cellctl reset`"),
         ({"state": "COMPLETED", "mode": "MAINTENANCE"}, "the guide of the procedure"),

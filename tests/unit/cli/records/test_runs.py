@@ -12,7 +12,9 @@ from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
 from cellctl.errors.records import RunUnknown, StoreUnavailable
 from cellctl.records import RunResult, RunStore
+from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entered.said_by import gauge_entries, measured_by
+from cellctl.records.entries import Document
 from cellctl.records.figures import KNOWN_TO, Limit, figure
 from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run
@@ -175,19 +177,44 @@ def test_a_note_is_told_and_shown(runner: CliRunner, folder: str) -> None:
     assert [note["detail"]["temperature_deg_c"] for note in shown["notes"]] == [21.3]
 
 
-def test_a_list_in_80_columns_cuts_nothing(
-    runner: CliRunner, folder: str, store: RunStore, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_list_in_80_columns_cuts_nothing(runner: CliRunner, folder: str, store: RunStore) -> None:
     start(store, "PROCEDURE-10801", mode="maintenance")
     dry = start(store, "SAT-0042", mode="dry run")
     store.close_run(dry, RunResult.BAD)
-    monkeypatch.setenv("COLUMNS", "80")
+    narrow = {"COLUMNS": "80"}
     for words in (["list"], ["show", str(dry)]):
-        listed = runner.invoke(app, [*words, "--data-dir", folder]).stdout
+        listed = runner.invoke(app, [*words, "--data-dir", folder], env=narrow).stdout
         assert "…" not in listed
         assert f"{store.run(dry).head.started:%Y-%m-%d %H:%M}" in listed
-        assert "done, no part" in listed
-    assert "PROCEDURE-10801" in runner.invoke(app, ["list", "--data-dir", folder]).stdout
+        assert max(len(line) for line in listed.splitlines()) <= 80
+    assert (
+        "PROCEDURE-10801" in runner.invoke(app, ["list", "--data-dir", folder], env=narrow).stdout
+    )
+
+
+def test_a_serial_number_is_never_broken(runner: CliRunner, folder: str, store: RunStore) -> None:
+    """Also not beside the longest result, nor one of the 24 characters that it may have."""
+    gauged = start(store, "SAT-0042")
+    store.add(gauged, Document(GAUGE_HOLES, {"P1": {"least_mm": 5.9, "most_mm": 6.0}}))
+    store.close_run(gauged, RunResult.GOOD)
+    store.set_gauge(gauged, "P1", 5.85, "OP-7")
+    longest = "SAT-0042-REPAIRED-TWICE7"
+    for serial in ("", longest):
+        if serial:
+            start(store, serial)
+        words = ["list", "--data-dir", folder]
+        listed = runner.invoke(app, words, env={"COLUMNS": "80"}).stdout
+        head, *_ = listed.splitlines()
+        assert head.split() == [
+            "run", "serial", "recipe", "mode", "started", "(UTC)", "duration", "result",
+        ]  # fmt: skip
+        assert max(len(line) for line in listed.splitlines()) <= 80
+        assert "SAT-0042 " in listed
+        assert serial in listed
+        assert "…" not in listed
+    wide = runner.invoke(app, ["list", "--data-dir", folder], env={"COLUMNS": "160"}).stdout
+    assert "SAT-0042 (sim)" in wide
+    assert "good, bad by gauge" in wide
 
 
 def test_a_run_that_a_command_ended_shows_by_whom_and_where(

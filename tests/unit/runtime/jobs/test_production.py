@@ -147,6 +147,19 @@ async def test_single_step_holds_before_each_step_and_measures_anew(rig: DaemonR
     assert [run.result for run in await rig.runs()] == ["good"]
 
 
+async def test_a_hold_in_contact_comes_too_late_and_that_is_shown(rig: DaemonRig) -> None:
+    rig.contact.may_end.clear()
+    await rig.started()
+    await rig.contact.reached.wait()
+    assert not rig.shown().safe_point_ahead
+    await rig.take(Command.HOLD)
+    assert rig.shown().hold_requested
+    rig.contact.may_end.set()
+    await rig.to(State.COMPLETED)
+    assert rig.shown().safe_point_ahead
+    assert State.HELD not in rig.states
+
+
 async def test_a_hold_on_the_way_begins_again_and_ends_well(rig: DaemonRig) -> None:
     main = rig.bench.cell.main
     await rig.idle()
