@@ -21,10 +21,10 @@ from cellctl.errors import CellError
 from cellctl.errors.config import UnknownDriver
 from cellctl.errors.records import NotReplayable
 from cellctl.records.entries import Calibration, RunRecord
-from cellctl.records.replayed import Replayed
+from cellctl.records.replay.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.interruption import Interruption
-from cellctl.runtime.procedure import Procedure
+from cellctl.runtime.procedure import Procedure, ProcedureReplay
 from cellctl.runtime.progress import ProgressBoard
 from cellctl.runtime.steps import SafePoint, Steps
 
@@ -152,6 +152,15 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     def procedures(self) -> Sequence[Procedure]:
         """Calibrations and other measurements of Maintenance, by their numbers."""
         return ()
+
+    @classmethod
+    def procedure_replays(cls) -> Mapping[int, ProcedureReplay]:
+        """How the recorded run of a procedure is computed anew, by the number of the procedure.
+
+        Called without a cell. One that opens its own record is no procedure here: its run is one
+        of the process, and ``replay`` gets it.
+        """
+        return {}
 
 
 def open_processes(services: CellServices) -> dict[str, Process[Any, Any, Any]]:

@@ -1,5 +1,6 @@
 """`cellctl replay`: compute a recorded run anew and compare."""
 
+import json
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,7 +13,10 @@ from cellctl.cli.records.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.errors.records import NotReplayable
 from cellctl.records.entries import MAINTENANCE
-from cellctl.records.replayed import Replayed
+from cellctl.records.files.artefacts import CELL_FILE
+from cellctl.records.replay.recorded_run import RecordedRun
+from cellctl.records.replay.replayed import Replayed
+from cellctl.runtime.procedure import ProcedureReplay
 from cellctl.runtime.process import Process
 
 
@@ -24,7 +28,8 @@ def replay(
 ) -> None:
     """Compute every measurement of a run anew from its raw images, poses and forces.
 
-    With the code of today; exit code 1 when anything differs from the record.
+    Of a procedure its result too. With the code of today; exit code 1 when anything differs from
+    the record.
     """
     lines = _replayed(run, data_dir)
     differing = [line for line in lines if not line.identical]
@@ -40,16 +45,28 @@ def replay(
 
 def _replayed(run: int, data_dir: Path | None) -> list[Replayed]:
     with opened_store(data_dir) as store:
-        record = store.run(run)
-        if record.head.process == MAINTENANCE:
-            raise NotReplayable(
-                f"run {run} is the procedure {record.head.recipe_name}, whose record keeps what it "
-                "has found and not the readings it was computed from"
-            )
+        record, files = store.run(run), store.artefacts
         calibrations = {one.id: one for one in store.calibrations()}
+        recorded = RecordedRun(record, lambda one: files.get(one.sha256), calibrations)
+        if record.head.process == MAINTENANCE:
+            return list(_procedure(recorded)(recorded))
         process = _process(record.head.process)
-        files = store.artefacts
-        return list(process.replay(record, lambda one: files.get(one.sha256), calibrations))
+        return list(process.replay(record, recorded.read, calibrations))
+
+
+def _procedure(run: RecordedRun) -> ProcedureReplay:
+    """How the procedure of a run is computed anew: a process of its cell knows that."""
+    head = run.record.head
+    names = list(json.loads(run.file(CELL_FILE))["processes"])
+    for name in names:
+        if name in installed_processes():
+            found = _process(name).procedure_replays().get(head.recipe_id)
+            if found is not None:
+                return found
+    raise NotReplayable(
+        f"run {head.number} is the procedure {head.recipe_name}, which no installed process of "
+        f"its cell ({', '.join(names) or 'none'}) computes anew"
+    )
 
 
 def _process(name: str) -> type[Process[Any, Any, Any]]:

@@ -1,8 +1,6 @@
 """A run in Maintenance mode: one procedure, chosen by its number."""
 
 import asyncio
-import re
-from collections.abc import Iterator
 
 from cellctl import log
 from cellctl.calibration.checks import Checks, checks_from_record
@@ -10,8 +8,8 @@ from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, MeasuredBeyondBound, ResultOutOfLimits
 from cellctl.errors.records import RecordsError
 from cellctl.packml.unit_command import UnitCommand
-from cellctl.records.entries import Figure, RunResult
-from cellctl.records.figures import Limit, figure
+from cellctl.records.entries import RunResult
+from cellctl.records.replay.procedure_result import STORED, check_figures
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.invalidation import refute
@@ -22,8 +20,6 @@ from cellctl.runtime.process import CellServices
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint
 
 _log = log.get(__name__)
-_NO_KEY = re.compile(r"[^a-z0-9]+")
-"""What stands between the words of a key; keys have dots of their own."""
 
 
 class MaintenanceJob(Job):
@@ -132,7 +128,7 @@ class MaintenanceJob(Job):
         await self._store.do(RunStore.add_calibration, stored)
         detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
         if self.run_number:
-            await RunRecorder(self._store, self.run_number).document("calibration", detail)
+            await RunRecorder(self._store, self.run_number).document(STORED, detail)
         await self._store.do(RunStore.audit, self._who, "calibration stored", detail)
         _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
 
@@ -141,7 +137,9 @@ class MaintenanceJob(Job):
         if not self.run_number:
             return
         try:
-            await RunRecorder(self._store, self.run_number).figures(_figures(outcome))
+            await RunRecorder(self._store, self.run_number).figures(
+                check_figures(outcome.kind.name, outcome.record)
+            )
         except RecordsError as error:
             # A disk that refuses them must not hide a bad verdict.
             if outcome.passed:
@@ -156,13 +154,6 @@ class MaintenanceJob(Job):
         except CalibrationNotStored as error:
             return f"and not kept: {error.detail}"
         return f"kept in {folder}"
-
-
-def _figures(outcome: ProcedureOutcome) -> Iterator[Figure]:
-    """Its checks, as any run has its figures."""
-    for check in _checks(outcome):
-        key = f"{outcome.kind.name}.{_NO_KEY.sub('_', check.name.lower()).strip('_')}"
-        yield figure(key, check.value, check.unit, label=check.name, limit=Limit(*check.bounds))
 
 
 def _checks(outcome: ProcedureOutcome) -> Checks:

@@ -54,7 +54,9 @@ class MotionRecorder:
         self._collected = _Collected()
         self._reported_s: dict[str, float] = {}
         self._felt_s: dict[str, float] = {}
-        self._writer = MotionWriter(file, utc_now(), now_s())
+        self.start_s = now_s()
+        """Monotonic time from which the recording counts."""
+        self._writer = MotionWriter(file, utc_now(), self.start_s)
         self._task: asyncio.Task[None] | None = None
         self._writing: asyncio.Task[None] | None = None
         self._fault: OSError | None = None

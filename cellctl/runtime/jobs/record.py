@@ -67,6 +67,10 @@ class JobRecord:
             self._opening = asyncio.create_task(self._write_procedure(number, label))
         return await self._opened(self._opening)
 
+    def recorded_at_s(self, time_s: float) -> float | None:
+        """A monotonic time as the recording of the run has it, from its start; None without one."""
+        return None if self._motion is None else time_s - self._motion.start_s
+
     async def close(self, outcome: RunResult, fault: CellError | None) -> None:
         """Close the record; does nothing when it was never opened or could not be opened."""
         if self._opening is None:

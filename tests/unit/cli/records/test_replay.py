@@ -1,5 +1,6 @@
 """`cellctl replay`: what it refuses, with which words."""
 
+import json
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from cellctl.cli.commands import whole_app
 from cellctl.errors.records import NotReplayable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import MAINTENANCE
+from cellctl.records.files.artefacts import CELL_FILE
 from tests.unit.records.conftest import start
 
 
@@ -23,9 +25,8 @@ def store(tmp_path: Path) -> Iterator[RunStore]:
 @pytest.mark.parametrize(
     ("process", "words"),
     [
-        (MAINTENANCE, "run 1 is the procedure panel 500 x 1000, whose record keeps what it has"),
-        ("antenna-module", "the process antenna-module cannot do that"),
-        ("peg-in-hole", "the process peg-in-hole cannot do that"),
+        ("antenna-module", "does not have the planes in which its images were measured"),
+        ("peg-in-hole", "has every tick, and not which of them a touch, a chirp"),
         ("milling", "the process milling is not installed"),
     ],
 )
@@ -36,4 +37,27 @@ def test_a_run_that_cannot_be_computed_anew_is_refused(
     refused = CliRunner().invoke(whole_app(), ["replay", "1", "--data-dir", str(store.path)])
     assert isinstance(refused.exception, NotReplayable)
     assert refused.exception.number == 813
+    assert words in refused.exception.detail
+
+
+@pytest.mark.parametrize(
+    ("cell", "words"),
+    [
+        (None, "cell.json is not in the record"),
+        ({}, "no installed process of its cell (none) computes anew"),
+        ({"milling": {}}, "no installed process of its cell (milling) computes anew"),
+        # It has procedures, and none of this number.
+        ({"milling": {}, "deck-to-frame": {}}, "(milling, deck-to-frame) computes anew"),
+    ],
+)
+def test_a_procedure_that_no_process_of_its_cell_computes_anew_is_refused(
+    store: RunStore, cell: dict[str, object] | None, words: str
+) -> None:
+    run = start(store, process=MAINTENANCE, mode=MAINTENANCE)
+    if cell is not None:
+        data = json.dumps({"processes": cell}).encode()
+        store.add_artefact(run, CELL_FILE, data, "application/json")
+    store.close_run(run, RunResult.GOOD)
+    refused = CliRunner().invoke(whole_app(), ["replay", "1", "--data-dir", str(store.path)])
+    assert isinstance(refused.exception, NotReplayable)
     assert words in refused.exception.detail
