@@ -1,6 +1,6 @@
 """Whether an arm still stands where its base frame was measured: one look at its targets."""
 
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Iterator
 
 from cellctl.calibration.arm_reference import (
     ArmReference,
@@ -11,6 +11,9 @@ from cellctl.calibration.arm_reference import (
 from cellctl.errors.robot import ArmReferenceMissing
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot, TargetTracker
+from cellctl.procedures.input_forms import look_to_input
+from cellctl.records.entries import Figure
+from cellctl.records.figures import Limit, figure
 from cellctl.runtime.procedure import ProcedureContext
 
 
@@ -48,26 +51,22 @@ async def check_arm_reference(
     await robot.move_joint(reference.joints_rad, speed_ratio=speed_ratio)
     now = await look_at_arm(robot, tracker, frames=frames, target_prefix=target_prefix)
     await go_home()
+    await context.keep_input({"then": look_to_input(reference), "now": look_to_input(now)})
     offsets = target_offsets(reference, now)
     # Before the verdict: by how much the arm is off belongs into the record of its run.
-    await _keep(context, offsets)
+    if context.recorder:
+        await context.recorder.figures(offset_figures(offsets))
     worst_m = require_arm_at_reference(offsets)
     context.board.update(message=f"all targets within {worst_m / MM:.3f} mm")
 
 
-async def _keep(context: ProcedureContext, offsets: Sequence[TargetOffset]) -> None:
-    if context.record.number:
-        # Only here: whoever checks a cell file loads this module too, and not the database.
-        from cellctl.records.figures import Limit, figure
-        from cellctl.records.run_recorder import RunRecorder
-
-        await RunRecorder(context.record.store, context.record.number).figures(
-            figure(
-                f"target_offset.{one.name}",
-                one.off_m / MM,
-                "mm",
-                label=f"distance of target {one.name} from its place",
-                limit=Limit(upper=one.limit_m / MM),
-            )
-            for one in offsets
+def offset_figures(offsets: Iterable[TargetOffset]) -> Iterator[Figure]:
+    """How far each target is from its place."""
+    for one in offsets:
+        yield figure(
+            f"target_offset.{one.name}",
+            one.off_m / MM,
+            "mm",
+            label=f"distance of target {one.name} from its place",
+            limit=Limit(upper=one.limit_m / MM),
         )

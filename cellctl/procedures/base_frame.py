@@ -1,10 +1,11 @@
 """The base of a robot in the large-field head (paper 2.1.2, fig. 2)."""
 
-from collections.abc import Awaitable, Callable
-from dataclasses import dataclass, replace
+from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
+from cellctl.calibration.arm_reference import ArmReference
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisStop
 from cellctl.calibration.solvers.base_frame.base_frame import (
     ArmGeometry,
@@ -15,6 +16,7 @@ from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, TargetTracker
 from cellctl.procedures.arm_reference import look_at_arm
+from cellctl.procedures.input_forms import look_to_input
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import SOLVE_S, VisionWorkers
 
@@ -55,14 +57,23 @@ async def calibrate_base(
     """
     motions = _Turner(context, robot, tracker, turns)
     # One axis at a time, because the line of an axis shows only while everything else is still.
-    a1_stops = await motions.turn(0)
-    a2_stops = await motions.turn(1)
+    a1_looks = await motions.turn(0)
+    a2_looks = await motions.turn(1)
     await motions.move(turns.start_rad)
     reference = await look_at_arm(
         robot, tracker, frames=turns.frames, target_prefix=turns.target_prefix
     )
     await go_home()
-    found = await workers.run_within(SOLVE_S, calibrate_base_frame, a1_stops, a2_stops, arm)
+    await context.keep_input(
+        {
+            "arm": asdict(arm),
+            "a1_stops": [look_to_input(stop) for stop in a1_looks],
+            "a2_stops": [look_to_input(stop) for stop in a2_looks],
+            "reference": look_to_input(reference),
+        }
+    )
+    stops = axis_stops(a1_looks), axis_stops(a2_looks)
+    found = await workers.run_within(SOLVE_S, calibrate_base_frame, *stops, arm)
     result = replace(found, reference=reference)
     # Loaded when it is drawn: checks of a cell file load this module for its moves.
     from cellctl.calibration.solvers.base_frame.base_frame_picture import base_frame_picture
@@ -84,12 +95,12 @@ class _Turner:
     tracker: TargetTracker
     turns: AxisTurns
 
-    async def turn(self, axis: int) -> list[AxisStop]:
+    async def turn(self, axis: int) -> list[ArmReference]:
         targets = turn_angles(self.turns, axis)
         # Back to the start first: while one axis turns, all others must stand where the start has
         # them.
         await self.move(self.turns.start_rad)
-        stops = []
+        looks = []
         for number, joints_rad in enumerate(targets, start=1):
             await self.context.progress(number, len(targets), f"axis A{axis + 1}: stop")
             await self.move(joints_rad)
@@ -102,11 +113,16 @@ class _Turner:
                 frames=self.turns.frames,
                 target_prefix=self.turns.target_prefix,
             )
-            stops.append(AxisStop(look.joints_rad, look.targets))
-        return stops
+            looks.append(look)
+        return looks
 
     async def move(self, joints_rad: Array) -> None:
         await self.robot.move_joint(joints_rad, speed_ratio=self.turns.speed_ratio)
+
+
+def axis_stops(looks: Sequence[ArmReference]) -> list[AxisStop]:
+    """What the solver takes of the looks at one turning axis."""
+    return [AxisStop(look.joints_rad, look.targets) for look in looks]
 
 
 def turn_angles(turns: AxisTurns, axis: int) -> list[Array]:

@@ -1,7 +1,9 @@
 """The payload from still poses with the part gripped (paper 2.4.1)."""
 
 import asyncio
-from typing import Protocol
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -10,6 +12,7 @@ from cellctl.calibration.payload import IdentifiedPayload
 from cellctl.calibration.store.kind import CalibrationKind
 from cellctl.cell.arm_loads import weighed_checks
 from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.config.devices import LoadConfig
 from cellctl.errors.force import NotSettled, SensorSilent
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import PoseRecord
@@ -22,13 +25,34 @@ from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
 HOLD_OUT_POSES = 4
-SETTLE_S = 0.5
-AVERAGE_S = 1.0
 STEADY_N, STEADY_N_M = 4.0, 1.5
 """Scatter of single samples at standstill, raw, above which hoses or arm still swing."""
 STEADY_TRIES = 5
 POLL_S = 0.02
 READ_TIMEOUT_S = 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class Stillness:
+    """How long the load is left alone and read, and the scatter up to which it counts as still."""
+
+    settle_s: float = 0.5
+    average_s: float = 1.0
+    steady_n: float = STEADY_N
+
+
+STILLNESS = Stillness()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StillReading:
+    """What the sensor reads while arm and load stand still."""
+
+    base_R_sensor: Rotation
+    wrench: Array
+    """Mean of the raw samples, shape (6,), N and N·m."""
+    times_s: Array
+    """Of the samples, monotonic; at least one."""
 
 
 class SampleSource(Protocol):
@@ -51,6 +75,7 @@ async def identify_payload_on_cell(
     pose_count: int,
     cone_deg: float,
     kind: CalibrationKind[IdentifiedPayload],
+    stillness: Stillness = STILLNESS,
 ) -> ProcedureOutcome:
     """Tilt around the present orientation, with nothing near, and identify.
 
@@ -60,7 +85,7 @@ async def identify_payload_on_cell(
     """
     robot = arm.robot
     poses = identification_poses(robot.state().base_T_flange, pose_count, cone_deg)
-    rotations, wrenches, roles = [], [], []
+    readings: list[StillReading] = []
     for number, pose in enumerate(poses, start=1):
         await context.progress(number, len(poses), f"{pose.role.value} pose")
         await robot.move_linear(
@@ -68,16 +93,18 @@ async def identify_payload_on_cell(
             speed_m_s=arm.config.linear_speed_mm_s * MM,
             acceleration_m_s2=arm.config.linear_acceleration_mm_s2 * MM,
         )
-        rotation, wrench = await still_wrench(robot, arm.guard, arm.flange_T_sensor)
-        rotations.append(rotation)
-        wrenches.append(wrench)
-        roles.append(pose.role)
-    result = _evaluate(rotations, wrenches, roles)
-    result = result.also((reaction_check(result.identification.rigid),))
-    if arm.config.load is not None:
-        rigid = result.identification.rigid
-        weighed = rigid.mass_kg, rigid.centre_of_mass_m
-        result = result.also(weighed_checks(arm.config.load, *weighed, arm.flange_T_sensor))
+        readings.append(await still_reading(robot, arm.guard, arm.flange_T_sensor, stillness))
+    roles = [pose.role for pose in poses]
+    await context.keep_input(_input(context, arm, readings, roles))
+    result = weighed(
+        PoseRecord(
+            Rotation.concatenate([reading.base_R_sensor for reading in readings]),
+            np.array([reading.wrench for reading in readings]),
+            tuple(roles),
+        ),
+        arm.config.load,
+        arm.flange_T_sensor,
+    )
     # Loaded when it is drawn: checks of a cell file load this module for its moves.
     from cellctl.procedures.payload_picture import residual_picture
 
@@ -107,6 +134,21 @@ def identification_poses(
     )
 
 
+def weighed(
+    poses: PoseRecord, load: LoadConfig | None, flange_T_sensor: RigidTransform
+) -> PayloadResult:
+    """The payload with all that it is held against; ``load`` is that of the cell file.
+
+    Raises ``TooFewPoses`` or ``PosesDegenerate``.
+    """
+    result = evaluate_payload(poses)
+    rigid = result.identification.rigid
+    result = result.also((reaction_check(rigid),))
+    if load is None:
+        return result
+    return result.also(weighed_checks(load, rigid.mass_kg, rigid.centre_of_mass_m, flange_T_sensor))
+
+
 async def still_wrench(
     robot: Robot,
     guard: SampleSource,
@@ -114,25 +156,36 @@ async def still_wrench(
     *,
     steady_n: float = STEADY_N,
 ) -> tuple[Rotation, Array]:
-    """base_R_sensor and mean raw wrench, shape (6,), once the forces scatter by less than
-    ``steady_n``.
+    """base_R_sensor and mean raw wrench, shape (6,), as ``still_reading``."""
+    stillness = Stillness(steady_n=steady_n)
+    reading = await still_reading(robot, guard, flange_T_sensor, stillness)
+    return reading.base_R_sensor, reading.wrench
+
+
+async def still_reading(
+    robot: Robot,
+    guard: SampleSource,
+    flange_T_sensor: RigidTransform,
+    stillness: Stillness,
+) -> StillReading:
+    """The mean of raw readings once the forces scatter by little enough.
 
     Raises ``NotSettled`` or ``SensorSilent``.
     """
-    limits = np.array([steady_n] * 3 + [STEADY_N_M] * 3)
+    limits = np.array([stillness.steady_n] * 3 + [STEADY_N_M] * 3)
     for _ in range(STEADY_TRIES):
         # Raw readings: a compensation that is active belongs to the old payload, and would be
         # identified again as a part of the new one.
-        raw = await _raw_samples(guard, SETTLE_S, AVERAGE_S)
-        scatter = raw.std(axis=0)
+        samples = await _samples(guard, stillness.settle_s, stillness.average_s)
+        scatter = samples.raw.std(axis=0)
         if (scatter < limits).all():
             rotation = robot.state().base_T_flange.rotation * flange_T_sensor.rotation
-            return rotation, raw.mean(axis=0)
+            return StillReading(rotation, samples.raw.mean(axis=0), samples.time_s)
     shown = ", ".join(f"{value:.2f}" for value in scatter)
     raise NotSettled(f"raw readings scatter by ({shown}) N, N·m at a pose of the payload")
 
 
-async def _raw_samples(guard: SampleSource, settle_s: float, average_s: float) -> Array:
+async def _samples(guard: SampleSource, settle_s: float, average_s: float) -> GuardSamples:
     loop = asyncio.get_running_loop()
     begin_s = loop.time() + settle_s
     end_s = begin_s + average_s
@@ -142,12 +195,30 @@ async def _raw_samples(guard: SampleSource, settle_s: float, average_s: float) -
         if loop.time() > end_s + READ_TIMEOUT_S:
             raise SensorSilent("no samples while reading a pose of the payload")
         await asyncio.sleep(POLL_S)
-    return guard.samples(begin_s).raw
+    return guard.samples(begin_s)
 
 
-def _evaluate(
-    rotations: list[Rotation], wrenches: list[Array], roles: list[PoseRole]
-) -> PayloadResult:
-    return evaluate_payload(
-        PoseRecord(Rotation.concatenate(rotations), np.array(wrenches), tuple(roles))
-    )
+def _input(
+    context: ProcedureContext,
+    arm: GuardedRobot,
+    readings: Sequence[StillReading],
+    roles: Sequence[PoseRole],
+) -> dict[str, Any]:
+    load = arm.config.load
+    return {
+        "sensor": arm.sensor_name,
+        "flange_T_sensor": arm.flange_T_sensor.as_matrix().tolist(),
+        "load": None if load is None else load.model_dump(mode="json"),
+        "poses": [
+            {
+                "role": role.value,
+                "base_R_sensor_xyzw": reading.base_R_sensor.as_quat().tolist(),
+                "wrench_n_n_m": reading.wrench.tolist(),
+                # The mean can be computed anew from the recording of the run, which has them all.
+                "samples": len(reading.times_s),
+                "from_s": context.record.recorded_at_s(float(reading.times_s[0])),
+                "to_s": context.record.recorded_at_s(float(reading.times_s[-1])),
+            }
+            for role, reading in zip(roles, readings, strict=True)
+        ],
+    }

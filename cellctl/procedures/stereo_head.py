@@ -14,7 +14,7 @@ from cellctl.errors.base import CellError
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.geometry.pose import MM
 from cellctl.procedures.calibration_poses import stereo_views
-from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
+from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome, views_of_pair
 from cellctl.workers import SOLVE_S, VisionWorkers
 
 if TYPE_CHECKING:
@@ -39,22 +39,27 @@ async def calibrate_head(
     """
     # What computes is loaded when it is used: checks of a cell file load this module for its moves.
     from cellctl.calibration.boards.board_images import BoardImages, detect_view
+    from cellctl.calibration.boards.board_record import board_to_record
     from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
     from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 
     base_T_flange = station.robot.state().base_T_flange
     poses = flange_poses(base_T_flange, station.flange_T_head, view_count)
     views: list[BoardView] = []
+    files: list[list[str]] = []
     image_size = (0, 0)
     for number, base_T_flange in enumerate(poses, start=1):
         await context.progress(number, len(poses), f"{station.name}: view")
         with _left_where_it_stands(station, number, len(poses)):
             await _move(station, base_T_flange)
             pair = await station.camera.grab()
+            files.append(
+                await context.keep_images(f"view-{number}", views_of_pair(station.name, pair))
+            )
             # In the order of OpenCV, width first; arrays have the height first.
             image_size = (pair.left.shape[1], pair.left.shape[0])
             view = await workers.run(
-                detect_view, BoardImages(f"view {number}", pair.left, pair.right), board
+                detect_view, BoardImages(view_name(number), pair.left, pair.right), board
             )
         # A later view without the board is no fault: at the borders of the field it may be cut off.
         # What all views together must cover, the solver checks. The first is taken from the taught
@@ -66,6 +71,7 @@ async def calibrate_head(
     # Back before the solution is tried: it may raise, and the head must not be left tilted over the
     # board.
     await _move(station, poses[0])
+    await context.keep_input({"board": board_to_record(board), "pairs": files})
     result = await workers.run_within(SOLVE_S, calibrate_stereo, views, board, image_size)
     return ProcedureOutcome(
         kind=kind,
@@ -75,6 +81,11 @@ async def calibrate_head(
         picture_png=await workers.run(stereo_picture, result),
         serial_number=await station.camera.serial_number(),
     )
+
+
+def view_name(number: int) -> str:
+    """What a view, counted from 1, is called in the result."""
+    return f"view {number}"
 
 
 def flange_poses(

@@ -5,21 +5,20 @@ from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.checks import Checks, LimitCheck, all_passed, evidence_to_record
+from cellctl.calibration.checks import all_passed
 from cellctl.calibration.store.envelope import read_calibration
 from cellctl.calibration.store.kind import CalibrationKind, verdict_is_pass
 from cellctl.cell.readiness import require_full_speed
 from cellctl.errors.calibration import CalibrationError
 from cellctl.errors.force import CommissioningFailed
 from cellctl.errors.robot import MotionAborted, NotRearmed
-from cellctl.force.contact.commissioning import LatencyEstimate, estimate_stop_latency
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Robot
+from cellctl.procedures.stop_latency_result import METHOD, UPPER_BOUND, StopLatency, TimedStop
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
@@ -35,22 +34,9 @@ ACCELERATION_M_S2 = 0.05
 POLL_S = 0.01
 START_TIMEOUT_S = 2.0
 END_TIMEOUT_S = 5.0
-SIGMA_MS = 15.0
-UPPER_BOUND = "upper bound"
-"""Name of the check that holds the result against what every recipe is safe with."""
-METHOD = "overrun against speed"
-"""Name of the method in the record, which tells it from those of other procedures."""
-RESIDUAL_MM = 0.15
-"""The robot reports every 20 ms: at 8 mm/s that is 0.16 mm between two reports."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StopLatency:
-    """The measurement with its data."""
-
-    estimate: LatencyEstimate
-    speeds_m_s: Array
-    overruns_m: Array
+UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,44 +82,24 @@ async def measure_stop_latency_on_cell(
     async def safe_point(number: int, total: int) -> None:
         await context.progress(number, total, "stop")
 
-    measured = await measure_stop_latency(robot, np.array([0.0, 0.0, 1.0]), safe_point)
-    checks = _checks(measured.estimate, bound_ms)
+    stops = await timed_stops(robot, UP, safe_point)
+    taken = [stop.to_input() for stop in stops]
+    await context.keep_input({"bound_ms": bound_ms, "direction": UP.tolist(), "stops": taken})
+    measured = StopLatency.of(stops, UP)
+    checks = measured.checks(bound_ms)
     data = measured.estimate, measured.speeds_m_s, measured.overruns_m
     # Loaded when it is drawn: checks of a cell file load this module for its moves.
     from cellctl.procedures.stop_latency_picture import latency_picture
 
     return ProcedureOutcome(
         kind=kind,
-        record=_record(measured, checks),
+        record=measured.to_record(checks),
         passed=all_passed(checks),
         warnings=(),
         picture_png=await workers.run(latency_picture, *data, checks),
         serial_number="",
         bounds=frozenset({UPPER_BOUND}),
     )
-
-
-def _checks(estimate: LatencyEstimate, bound_ms: float) -> Checks:
-    """The verdict; ``bound_ms``: what every recipe is safe with while this result is not valid."""
-    return (
-        LimitCheck(UPPER_BOUND, estimate.upper_s * 1e3, bound_ms, "ms"),
-        LimitCheck("sigma", estimate.sigma_s * 1e3, SIGMA_MS, "ms"),
-        LimitCheck("residual", estimate.residual_m / MM, RESIDUAL_MM, "mm"),
-    )
-
-
-def _record(measured: StopLatency, checks: Checks) -> dict[str, Any]:
-    estimate = measured.estimate
-    return {
-        **evidence_to_record(METHOD, checks),
-        "latency_ms": estimate.latency_s * 1e3,
-        "sigma_ms": estimate.sigma_s * 1e3,
-        "upper_ms": estimate.upper_s * 1e3,
-        "offset_mm": estimate.offset_m / MM,
-        "residual_mm": estimate.residual_m / MM,
-        "speeds_mm_s": (measured.speeds_m_s / MM).tolist(),
-        "overruns_mm": (measured.overruns_m / MM).tolist(),
-    }
 
 
 async def measure_stop_latency(
@@ -144,7 +110,20 @@ async def measure_stop_latency(
     speeds_m_s: tuple[float, ...] = SPEEDS_M_S,
     repeats: int = REPEATS,
 ) -> StopLatency:
-    """Start, request a stop on the way, and measure how far the arm still goes; return each time.
+    """The latency from ``timed_stops``; raises what these raise, and ``CommissioningFailed``."""
+    stops = await timed_stops(robot, direction, safe_point, speeds_m_s=speeds_m_s, repeats=repeats)
+    return StopLatency.of(stops, direction)
+
+
+async def timed_stops(
+    robot: Robot,
+    direction: Array,
+    safe_point: Callable[[int, int], Awaitable[None]],
+    *,
+    speeds_m_s: tuple[float, ...] = SPEEDS_M_S,
+    repeats: int = REPEATS,
+) -> tuple[TimedStop, ...]:
+    """Start, request a stop on the way, and see how far the arm still goes; return each time.
 
     ``direction``: unit vector in the base that is free for 30 mm; ``safe_point`` is awaited at
     standstill before each stop with its number and how many there are. Raises
@@ -152,19 +131,18 @@ async def measure_stop_latency(
     """
     home = robot.state().base_T_flange
     speeds = [speed for speed in speeds_m_s for _ in range(repeats)]
-    overruns = []
+    stops = []
     for number, speed_m_s in enumerate(speeds, start=1):
         await safe_point(number, len(speeds))
-        overruns.append(await _overrun(robot, direction, speed_m_s))
+        stops.append(await _stop(robot, direction, speed_m_s))
         # A stop latches the robot; it takes no further motion before this.
         await robot.rearm()
         # Back to where it began, so that the travel is known to be free each time.
         await robot.move_linear(home, speed_m_s=0.01, acceleration_m_s2=ACCELERATION_M_S2)
-    data = np.array(speeds), np.array(overruns)
-    return StopLatency(estimate_stop_latency(*data), *data)
+    return tuple(stops)
 
 
-async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
+async def _stop(robot: Robot, direction: Array, speed_m_s: float) -> TimedStop:
     # With an override on the pendant the arm is slower than commanded, and the slope of overrun
     # against commanded speed would be a latency that is too short. Asked again after the stop,
     # because the override may be turned on the way.
@@ -178,10 +156,6 @@ async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
         await _moving(robot, motion)
         await asyncio.sleep(RUN_S)
         state, request_s = robot.state(), asyncio.get_running_loop().time()
-        seen_m = float((state.base_T_flange.translation - start.translation) @ direction)
-        # The newest report is up to one cycle of the robot old; at constant speed the way since
-        # then is known.
-        at_request_m = seen_m + speed_m_s * (request_s - state.time_s)
         await robot.stop()
         await _aborted(motion)
     finally:
@@ -190,14 +164,20 @@ async def _overrun(robot: Robot, direction: Array, speed_m_s: float) -> float:
         motion.cancel()
         await asyncio.gather(motion, return_exceptions=True)
     require_full_speed(robot)
-    end_m = float((await at_rest(robot) - start.translation) @ direction)
+    stop = TimedStop(
+        speed_m_s,
+        start.translation,
+        state.base_T_flange.translation,
+        request_s - state.time_s,
+        await at_rest(robot),
+    )
     # Too near to its target, the arm was braking by itself, and the overrun says nothing about the
     # stop.
-    if end_m > TRAVEL_M - speed_m_s * 0.1:
+    if stop.way_m(direction) > TRAVEL_M - speed_m_s * 0.1:
         raise CommissioningFailed(
             f"at {speed_m_s / MM:.1f} mm/s the arm ran to its target instead of stopping"
         )
-    return end_m - at_request_m
+    return stop
 
 
 async def _moving(robot: Robot, motion: asyncio.Task[object]) -> None:

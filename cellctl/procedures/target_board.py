@@ -1,7 +1,11 @@
 """The target board before one stereo head and the large-field head (paper fig. 3, eq. 1, 2)."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.boards.board_pose import (
@@ -16,8 +20,15 @@ from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import MM
-from cellctl.interfaces import StereoPair, TargetTracker
-from cellctl.vision.camera.stereo_head import StereoHead
+from cellctl.interfaces import StereoPair, Target, TargetTracker
+from cellctl.interfaces.stereo_camera import Image
+from cellctl.procedures.input_forms import targets_from_input, targets_to_input
+from cellctl.runtime.procedure import ProcedureContext, views_of_pair
+from cellctl.vision.camera.stereo_head import (
+    StereoHead,
+    stereo_head_from_json,
+    stereo_head_to_json,
+)
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.holes.turned import pose_turned_like
@@ -32,7 +43,40 @@ SEARCH_RADIUS_M = 35 * MM
 """Less than half the pitch of the discs."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class BoardLook:
+    """What a placement is computed from; plain data, but for the model of the head."""
+
+    model: StereoHead
+    head_T_board: RigidTransform
+    """Roughly where the board lies."""
+    pairs: list[list[str]]
+    """Files of the images, left and right."""
+    targets: tuple[Target, ...]
+    """All that the large-field head has seen."""
+
+    def to_input(self) -> dict[str, Any]:
+        """Plain data."""
+        return {
+            "head": stereo_head_to_json(self.model),
+            "head_T_board_predicted": self.head_T_board.as_matrix().tolist(),
+            "pairs": self.pairs,
+            "targets": targets_to_input(self.targets),
+        }
+
+    @classmethod
+    def from_input(cls, written: Mapping[str, Any]) -> "BoardLook":
+        """The inverse of ``to_input``."""
+        return cls(
+            stereo_head_from_json(written["head"]),
+            RigidTransform.from_matrix(np.array(written["head_T_board_predicted"], float)),
+            [list(pair) for pair in written["pairs"]],
+            targets_from_input(written["targets"]),
+        )
+
+
 async def place_board(
+    context: ProcedureContext,
     station: StereoStation,
     model: StereoHead,
     tracker: TargetTracker,
@@ -40,8 +84,8 @@ async def place_board(
     *,
     flange_T_board: RigidTransform,
     tracker_frames: int,
-) -> BoardPlacement:
-    """The board as head and large-field head see it, both at once.
+) -> tuple[BoardPlacement, BoardLook]:
+    """The board as head and large-field head see it, both at once, and what it is computed from.
 
     ``flange_T_board`` is roughly where the board lies under the head's robot. A board that does not
     lie there is looked for in the whole images; then it only tells which way round the board lies,
@@ -51,20 +95,30 @@ async def place_board(
     head_T_board = station.flange_T_head.inv() * flange_T_board
     # At once: a board that moved between the two measurements would show as a pose between the
     # heads.
-    in_head, in_large_field = await gather_or_cancel(
-        _in_head(station, model, workers, head_T_board), _in_large_field(tracker, tracker_frames)
+    seen: list[Any] = await gather_or_cancel(
+        _in_head(context, station, model, workers, head_T_board),
+        tracker.measure(tracker_frames),
     )
-    return BoardPlacement(in_large_field, in_head)
+    (in_head, files), targets = seen
+    look = BoardLook(model, head_T_board, files, targets)
+    return BoardPlacement(board_in_large_field(targets), in_head), look
 
 
 async def _in_head(
-    station: StereoStation, model: StereoHead, workers: VisionWorkers, head_T_board: RigidTransform
-) -> BoardPose:
-    drawing = target_board_discs()
-    discs = [Hole(name, "disc", DISC_DIAMETER_M, place) for name, place in drawing.items()]
+    context: ProcedureContext,
+    station: StereoStation,
+    model: StereoHead,
+    workers: VisionWorkers,
+    head_T_board: RigidTransform,
+) -> tuple[BoardPose, list[list[str]]]:
+    """The board, and the files of the images."""
+    discs = board_discs()
     found: list[PairMeasurement] = []
-    for _ in range(PAIRS):
+    files: list[list[str]] = []
+    for number in range(1, PAIRS + 1):
         pair = await station.camera.grab()
+        views = views_of_pair(station.name, pair)
+        files.append(await context.keep_images(f"board-{number}", views))
         try:
             measured = await _measured(workers, pair, model, discs, head_T_board)
         except HoleMissing:
@@ -75,10 +129,7 @@ async def _in_head(
             head_T_board = await workers.run(pose_turned_like, images, discs, head_T_board)
             measured = await _measured(workers, pair, model, discs, head_T_board)
         found.append(measured)
-    points = [
-        BoardPoint(hole.name, hole.position_m, hole.covariance_m2) for hole in average(found).holes
-    ]
-    return fit_board(drawing, points)
+    return board_in_head(found), files
 
 
 async def _measured(
@@ -101,7 +152,44 @@ async def _measured(
     )
 
 
-async def _in_large_field(tracker: TargetTracker, frames: int) -> BoardPose:
+def placed_again(look: BoardLook, image: Callable[[str], Image]) -> BoardPlacement:
+    """The placement from its recorded look, as ``place_board``; ``image`` reads one by its file.
+
+    Raises the faults of vision and ``BoardPoseInvalid``.
+    """
+    discs, head_T_board = board_discs(), look.head_T_board
+    found: list[PairMeasurement] = []
+    for left, right in ((image(left), image(right)) for left, right in look.pairs):
+        search = partial(
+            measure_pair, left, right, look.model, discs, search_radius_m=SEARCH_RADIUS_M
+        )
+        try:
+            measured = search(camera_T_part=head_T_board)
+        except HoleMissing:
+            if found:
+                raise
+            images = HeadImages(look.model, left, right)
+            head_T_board = pose_turned_like(images, discs, head_T_board)
+            measured = search(camera_T_part=head_T_board)
+        found.append(measured)
+    return BoardPlacement(board_in_large_field(look.targets), board_in_head(found))
+
+
+def board_discs() -> list[Hole]:
+    """The discs of the board as vision looks for them."""
     drawing = target_board_discs()
-    seen = await tracker.measure(frames)
-    return fit_board(drawing, points_from_targets(seen, drawing))
+    return [Hole(name, "disc", DISC_DIAMETER_M, place) for name, place in drawing.items()]
+
+
+def board_in_head(found: Sequence[PairMeasurement]) -> BoardPose:
+    """The board from what a head has measured, several times; raises ``BoardPoseInvalid``."""
+    points = [
+        BoardPoint(hole.name, hole.position_m, hole.covariance_m2) for hole in average(found).holes
+    ]
+    return fit_board(target_board_discs(), points)
+
+
+def board_in_large_field(targets: Iterable[Target]) -> BoardPose:
+    """The board from what the large-field head has seen; raises ``BoardPoseInvalid``."""
+    drawing = target_board_discs()
+    return fit_board(drawing, points_from_targets(targets, drawing))

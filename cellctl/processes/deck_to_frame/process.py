@@ -1,6 +1,7 @@
 """The process: one deck is put onto one frame (paper, section 1.2)."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -21,9 +22,10 @@ from cellctl.processes.deck_to_frame.record_names import (
 from cellctl.processes.deck_to_frame.roles import HEAD_1, HEAD_2, ROLES
 from cellctl.processes.deck_to_frame.settings import DeckSettings
 from cellctl.records.entries import Calibration, RunRecord
-from cellctl.records.replayed import Replayed
+from cellctl.records.replay.recorded_run import RecordedRun
+from cellctl.records.replay.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
-from cellctl.runtime.procedure import Procedure
+from cellctl.runtime.procedure import Procedure, ProcedureReplay
 from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
 
@@ -210,10 +212,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
     def replay(
         cls, record: RunRecord, read: ReadArtefact, calibrations: Mapping[str, Calibration]
     ) -> Iterator[Replayed]:
-        """Poses from the raw images, what followed from them, and the peaks of the force."""
+        """Poses from the raw images, what followed from them, the peaks of the force, and of
+        procedure 108 the stiffness."""
+        from cellctl.processes.deck_to_frame.procedures.replays import replay_stiffness
         from cellctl.processes.deck_to_frame.record.replay import replay
 
-        return replay(record, read, calibrations)
+        run = RecordedRun(record, read, calibrations)
+        return chain(replay(record, read, calibrations), replay_stiffness(run))
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibration and commissioning, 101 to 109."""
@@ -233,6 +238,13 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
             return self.services.calibrations.read(PAYLOAD).gravity_compensation
         except CalibrationError:
             return None
+
+    @classmethod
+    def procedure_replays(cls) -> Mapping[int, ProcedureReplay]:
+        """From the images, targets, wrenches and stops that their runs have kept."""
+        from cellctl.processes.deck_to_frame.procedures.replays import REPLAYS
+
+        return REPLAYS
 
     def cell(self, recipe: DeckRecipe) -> "DeckCell":
         """The devices in the roles of a recipe."""

@@ -12,48 +12,19 @@ from cellctl.errors.calibration import CalibrationInvalidated
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.robot import ArmOffReference, ArmReferenceMissing
 from cellctl.geometry.pose import pose_error
-from cellctl.interfaces import Target
 from cellctl.processes.deck_to_frame.calibrations import BASE_FRAME, BOARD_TRANSFER
 from cellctl.records.entries import RunResult, Verdict
 from cellctl.records.store import RunStore
 from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.steps import HeldMeanwhile
-from tests.rigs.calibration.turned_arm import (
-    C_T_BASE,
-    RING,
-    SIGMA_M,
-    flange,
-)
+from tests.rigs.calibration.turned_arm import C_T_BASE
+from tests.unit.procedures.large_field import Watching
 from tests.unit.procedures.rig import ProcedureRig
-
-
-class Watching:
-    """A large-field head that sees the flange's targets, and one that lies about."""
-
-    def __init__(self, rig: ProcedureRig) -> None:
-        self._main = rig.bench.cell.main
-        self._rng = np.random.default_rng(0)
-        self.frames: list[int] = []
-        self.mastered_beside_rad = np.zeros(6)
-        """How far the arm really stands beside the joints that it reports."""
-
-    async def serial_number(self) -> str:
-        return "ET-7"
-
-    async def measure(self, frames: int = 1) -> tuple[Target, ...]:
-        self.frames.append(frames)
-        c_T_flange = C_T_BASE * flange(self._main.joints_rad + self.mastered_beside_rad)
-        places = [c_T_flange.apply(place) + self._rng.normal(0, SIGMA_M, 3) for place in RING]
-        named = [Target(f"F{n}", place, SIGMA_M) for n, place in enumerate(places, 1)]
-        return (*named, Target("P1", np.zeros(3), SIGMA_M))
 
 
 @pytest.fixture
 def watching(rig: ProcedureRig) -> Watching:
-    rig.bench.cell.trackers["tracker"] = watching = Watching(rig)  # type: ignore[assignment]
-    rig.renew()
-    rig.answer(base_frame_picture=lambda _: b"png")
-    return watching
+    return Watching(rig)
 
 
 async def test_the_base_is_found_and_the_arm_goes_home(

@@ -11,12 +11,8 @@ from cellctl.errors.force import CommissioningFailed, NotSettled
 from cellctl.errors.robot import SpeedOverridden
 from cellctl.interfaces import RobotState
 from cellctl.procedures.payload import STEADY_N, still_wrench
-from cellctl.procedures.stop_latency import (
-    StopLatency,
-    at_rest,
-    measure_stop_latency,
-    stored_stop_latencies,
-)
+from cellctl.procedures.stop_latency import at_rest, measure_stop_latency, stored_stop_latencies
+from cellctl.procedures.stop_latency_result import StopLatency
 from cellctl.runtime.steps import HeldMeanwhile
 from tests.rigs.mating.cell import MatingCell
 from tests.rigs.mating.simulated_loop import run_simulated

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Sequence
-from dataclasses import replace
 from datetime import timedelta
 from typing import Any
 
@@ -16,8 +15,7 @@ from cellctl.calibration.store.envelope import read_calibration
 from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.vision import HoleMissing
-from cellctl.geometry.pose import Array, pose_error, pose_from_xyzabc
-from cellctl.interfaces import Target
+from cellctl.geometry.pose import pose_error, pose_from_xyzabc
 from cellctl.procedures.target_board import PAIRS
 from cellctl.processes.deck_to_frame.calibrations import (
     BASE_FRAME,
@@ -29,26 +27,14 @@ from cellctl.runtime.procedure import ProcedureOutcome
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
-from tests.contracts.inprocess.target_tracker import InProcessTracker
+from tests.unit.procedures.large_field import FIELD_SIGMA_M, Field
 from tests.unit.procedures.rig import ProcedureRig
 
-HEAD_SIGMA_M, FIELD_SIGMA_M = 5e-6, 7e-6
+HEAD_SIGMA_M = 5e-6
 BASE_T_C = {
     "head_1": pose_from_xyzabc([1700, -400, 950, 90, 5, 178]),
     "head_2": pose_from_xyzabc([2100, 400, 950, -90, 5, 178]),
 }
-
-
-class Field(InProcessTracker):
-    """Averages over many frames."""
-
-    def see(self, truth: dict[str, Array]) -> None:
-        self._truth = truth
-
-    async def measure(self, frames: int = 1) -> tuple[Target, ...]:
-        return tuple(
-            replace(target, sigma_m=FIELD_SIGMA_M) for target in await super().measure(frames)
-        )
 
 
 class Boards:
@@ -61,10 +47,7 @@ class Boards:
         self.head_T_board = pose_from_xyzabc([5, -8, 505, 3, 1, 179])
         self.predicted: list[RigidTransform] = []
         rig.answer(measure_pair=self._measure, transfer_picture=lambda _: b"png")
-        rig.bench.cell.tracker = self.field = Field("tracker", {})
-        rig.bench.cell.trackers["tracker"] = self.field
-        self.field._connected = True
-        rig.renew()
+        self.field = Field.of(rig)
 
     def place(self, head: str) -> None:
         c_T_board = self.c_T_base * BASE_T_C[head] * self.head_T_board

@@ -1,15 +1,19 @@
 """Procedures 104 and 105: from head I to head II by the target board (paper fig. 3, eq. 1 to 3)."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from cellctl.calibration.solvers.transfer.board_transfer import (
     BoardPlacement,
+    TransferResult,
     calibrate_board_transfer,
 )
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
 from cellctl.calibration.store.store import CalibrationStore
 from cellctl.config.base import JointsDeg
 from cellctl.geometry.pose import pose_from_xyzabc
+from cellctl.procedures.input_forms import board_from_input, board_to_input, pose_to_input
 from cellctl.procedures.target_board import place_board
 from cellctl.processes.deck_to_frame.calibrations import (
     BASE_FRAME,
@@ -34,6 +38,22 @@ class HeadPlacement:
     board: BoardPlacement
     joints_deg: JointsDeg
     """The measuring pose from which the head saw it."""
+
+    def to_input(self) -> dict[str, Any]:
+        """Plain data with all digits."""
+        return {
+            "c_T_board": board_to_input(self.board.c_T_board),
+            "head_T_board": board_to_input(self.board.head_T_board),
+            "joints_deg": list(self.joints_deg),
+        }
+
+    @classmethod
+    def from_input(cls, written: Mapping[str, Any]) -> "HeadPlacement":
+        """The inverse of ``to_input``."""
+        c_T_board, head_T_board = (
+            board_from_input(written[name]) for name in ("c_T_board", "head_T_board")
+        )
+        return cls(BoardPlacement(c_T_board, head_T_board), tuple(written["joints_deg"]))
 
 
 @dataclass(slots=True)
@@ -81,7 +101,8 @@ async def measure_board(
     station = cell.head(head)
     model = calibrations.read(_CAMERAS[head]).head
     await context.progress(1, 1, f"{station.name}: target board")
-    board = await place_board(
+    board, look = await place_board(
+        context,
         station,
         model,
         cell.tracker,
@@ -89,21 +110,34 @@ async def measure_board(
         flange_T_board=pose_from_xyzabc(cell.settings.flange_T_target_board),
         tracker_frames=cell.settings.tracker_frames,
     )
-    waiting.by_head[head] = HeadPlacement(board, station.config.poses_deg[MEASURING])
+    here = HeadPlacement(board, station.config.poses_deg[MEASURING])
+    waiting.by_head[head] = here
     both = waiting.take(HEAD_1, HEAD_2)
+    seen = {"head_role": head, "look": look.to_input(), "placement": here.to_input()}
     if both is None:
+        await context.keep_input(seen)
         return None
-    first, second = both
     c_T_base = calibrations.read(BASE_FRAME).c_T_base
+    first, second = both
+    other = second if first is here else first
+    made_with = {"other_placement": other.to_input(), "c_T_base": pose_to_input(c_T_base)}
+    await context.keep_input(seen | made_with)
     result = await cell.workers.run_within(
         SOLVE_S, calibrate_board_transfer, c_T_base, [first.board], [second.board]
     )
-    joints_deg = {HEAD_1: first.joints_deg, HEAD_2: second.joints_deg}
     return ProcedureOutcome(
         kind=BOARD_TRANSFER,
-        record={**result.to_record(), HEAD_JOINTS: joints_deg},
+        record=transfer_record(result, first, second),
         passed=result.passed,
         warnings=result.warnings,
         picture_png=await cell.workers.run(transfer_picture, result),
         serial_number=await cell.tracker.serial_number(),
     )
+
+
+def transfer_record(
+    result: TransferResult, first: HeadPlacement, second: HeadPlacement
+) -> dict[str, Any]:
+    """What is stored; it holds for the measuring poses from which both heads saw the board."""
+    joints_deg = {HEAD_1: first.joints_deg, HEAD_2: second.joints_deg}
+    return {**result.to_record(), HEAD_JOINTS: joints_deg}

@@ -16,6 +16,7 @@ from cellctl.processes.deck_to_frame.procedures.contact_stiffness_result import 
     STIFFNESS,
     stiffness_checks,
     stiffness_record,
+    touches_of,
 )
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record.force_curves import curves_kept
@@ -60,10 +61,12 @@ async def measure_contact_stiffness_on_cell(
             _log.info("held meanwhile: everything is measured again")
     # After the last contact the deck stands at its stand-off, low over the station.
     await main_to_home(cell)
-    checks = stiffness_checks(measured, recipe.mating)
+    touches, estimate = touches_of(measured), measured.estimate
+    await context.keep_input({"contacts": [touch.to_input() for touch in touches]})
+    checks = stiffness_checks(estimate, touches, recipe.mating)
     return ProcedureOutcome(
         kind=CONTACT_STIFFNESS.for_recipe(recipe.id),
-        record=stiffness_record(measured, checks, recipe.id, number),
+        record=stiffness_record(estimate, touches, checks, recipe_id=recipe.id, run_number=number),
         passed=all_passed(checks),
         warnings=(),
         picture_png=await cell.workers.run(stiffness_picture, measured, checks),

@@ -1,11 +1,14 @@
 """Judges a contact stiffness and writes it as plain data, in N/mm, mm and N."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from cellctl.calibration.checks import Checks, LimitCheck, evidence_to_record
-from cellctl.geometry.pose import MM
+from cellctl.force.contact.commissioning import StiffnessEstimate, estimate_stiffness
+from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.mating.commissioning import ContactStiffness
 from cellctl.processes.deck_to_frame.mating.result import MatingResult, Reading
 from cellctl.processes.deck_to_frame.recipe import Mating
@@ -23,11 +26,61 @@ STIFFNESS = "stiffness"
 """Name of the check that holds the result against the bound of the recipe."""
 
 
-def stiffness_checks(measured: ContactStiffness, mating: Mating) -> Checks:
+@dataclass(frozen=True, slots=True, eq=False)
+class Touch:
+    """One contact as the record has it; readings at standstill in contact, oldest first."""
+
+    estimate: StiffnessEstimate
+    travel_m: Array
+    """Shape (n,)."""
+    force_n: Array
+    """Along the approach, shape (n,)."""
+    peak_n: float
+    peak_filtered_n: float
+
+    @classmethod
+    def of(cls, estimate: StiffnessEstimate, contact: MatingResult) -> "Touch":
+        """A contact with the stiffness that was found in it."""
+        readings = readings_of(contact)
+        return cls(
+            estimate,
+            np.array([reading.travel_m for reading in readings]),
+            np.array([reading.force_n for reading in readings]),
+            contact.statistics.peak_fz_n,
+            contact.statistics.peak_filtered_fz_n,
+        )
+
+    def to_input(self) -> dict[str, Any]:
+        """Plain data with all digits, without what is computed from them."""
+        return {
+            "travel_m": self.travel_m.tolist(),
+            "force_n": self.force_n.tolist(),
+            "peak_n": self.peak_n,
+            "peak_filtered_n": self.peak_filtered_n,
+        }
+
+    @classmethod
+    def from_input(cls, written: Mapping[str, Any]) -> "Touch":
+        """The contact with the stiffness that follows from its readings.
+
+        Raises ``CommissioningFailed``.
+        """
+        travel_m, force_n = (np.array(written[name], float) for name in ("travel_m", "force_n"))
+        estimate = estimate_stiffness(travel_m, force_n)
+        return cls(estimate, travel_m, force_n, written["peak_n"], written["peak_filtered_n"])
+
+
+def touches_of(measured: ContactStiffness) -> tuple[Touch, ...]:
+    """All contacts of a measurement."""
+    return tuple(map(Touch.of, measured.single, measured.contacts))
+
+
+def stiffness_checks(
+    estimate: StiffnessEstimate, touches: Sequence[Touch], mating: Mating
+) -> Checks:
     """The verdict: does it repeat, is it a line, does the recipe's bound hold?"""
-    estimate = measured.estimate
-    starts_mm = np.array([single.contact_m for single in measured.single]) / MM
-    peak_n = max(contact.statistics.peak_filtered_fz_n for contact in measured.contacts)
+    starts_mm = np.array([touch.estimate.contact_m for touch in touches]) / MM
+    peak_n = max(touch.peak_filtered_n for touch in touches)
     percent = 100.0 * estimate.sigma_n_m / estimate.stiffness_n_m
     return (
         LimitCheck(STIFFNESS, estimate.stiffness_n_m * MM, mating.stiffness_n_per_mm, "N/mm"),
@@ -39,10 +92,14 @@ def stiffness_checks(measured: ContactStiffness, mating: Mating) -> Checks:
 
 
 def stiffness_record(
-    measured: ContactStiffness, checks: Checks, recipe_id: int, run_number: int
+    estimate: StiffnessEstimate,
+    touches: Sequence[Touch],
+    checks: Checks,
+    *,
+    recipe_id: int,
+    run_number: int,
 ) -> dict[str, Any]:
     """What is stored; ``run_number`` leads to pictures and force curves."""
-    estimate = measured.estimate
     return {
         **evidence_to_record("contact stiffness", checks),
         "recipe_id": recipe_id,
@@ -53,15 +110,15 @@ def stiffness_record(
         "residual_n": estimate.residual_n,
         "contacts": [
             {
-                "stiffness_n_per_mm": single.stiffness_n_m * MM,
-                "sigma_n_per_mm": single.sigma_n_m * MM,
-                "contact_mm": single.contact_m / MM,
-                "residual_n": single.residual_n,
-                "travel_mm": [reading.travel_m / MM for reading in readings_of(contact)],
-                "force_n": [reading.force_n for reading in readings_of(contact)],
-                "peak_force_n": contact.statistics.peak_fz_n,
+                "stiffness_n_per_mm": touch.estimate.stiffness_n_m * MM,
+                "sigma_n_per_mm": touch.estimate.sigma_n_m * MM,
+                "contact_mm": touch.estimate.contact_m / MM,
+                "residual_n": touch.estimate.residual_n,
+                "travel_mm": (touch.travel_m / MM).tolist(),
+                "force_n": touch.force_n.tolist(),
+                "peak_force_n": touch.peak_n,
             }
-            for single, contact in zip(measured.single, measured.contacts, strict=True)
+            for touch in touches
         ],
     }
 

@@ -53,7 +53,7 @@ from cellctl.records.entries import Calibration, PoseOrigin, RecordedPose, RunRe
 from cellctl.records.figures import split_document
 from cellctl.records.files.curve_file import is_curve, read_recording
 from cellctl.records.files.raw_images import decode
-from cellctl.records.replayed import Replayed, compare
+from cellctl.records.replay.replayed import Replayed, compare
 from cellctl.records.report.sections import ReadArtefact
 from cellctl.vision.features.feature_file import FeatureFile, parse_features
 from cellctl.vision.measure import measure_pair

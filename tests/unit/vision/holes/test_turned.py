@@ -1,6 +1,5 @@
 """A board that lies elsewhere than expected is found, and its discs get their own names."""
 
-import cv2
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -8,13 +7,11 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.boards.board_pose import target_board_discs
 from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import MM, pose_error
-from cellctl.interfaces.stereo_camera import Image
-from cellctl.vision.camera.lens import project
-from cellctl.vision.camera.stereo_head import CameraModel
 from cellctl.vision.features.hole import Hole
 from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.holes.turned import pose_turned_like
 from cellctl.vision.measure import measure_pair
+from tests.rigs.calibration.drawn_discs import drawn_discs
 from tests.unit.vision.plates import plate_facing, table_1_head
 
 HEAD = table_1_head()
@@ -23,22 +20,8 @@ TRUE = plate_facing(4.0, -6.0, 12.0)
 """Tilted by 12° about two axes, as before a head that looks at the station askew."""
 
 
-def drawn(camera: CameraModel, camera_T_board: RigidTransform, discs: list[Hole]) -> Image:
-    width, height = HEAD.image_size
-    image = np.full((height, width), 30, np.uint8)
-    angles = np.linspace(0.0, 2 * np.pi, 200, endpoint=False)
-    round_ = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(200)])
-    for disc in discs:
-        rim = camera_T_board.apply(disc.position_m + round_ * disc.diameter_m / 2)
-        # OpenCV takes sixteenths of a pixel as whole numbers.
-        corners = np.rint(project(camera, rim) * 16).astype(np.int32)
-        cv2.fillPoly(image, [corners], 190, cv2.LINE_AA, shift=4)
-    return np.asarray(cv2.GaussianBlur(image, (0, 0), 0.9), dtype=np.uint8)
-
-
 def both(discs: list[Hole]) -> HeadImages:
-    left = drawn(HEAD.left, TRUE, discs)
-    return HeadImages(HEAD, left, drawn(HEAD.right, HEAD.right_T_left * TRUE, discs))
+    return HeadImages(HEAD, *drawn_discs(HEAD, TRUE, discs))
 
 
 IMAGES = both(DISCS)
