@@ -58,6 +58,8 @@ class Seen(Generic[M]):
     joints_rad: Array
     time_s: float
     """Time of the last image."""
+    look: str = ""
+    """Name of the look, by which its raw images are found."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +73,8 @@ class Eyes:
     frames: int
     exposures: RunExposures | None = None
     """Exposures of its cameras; None where they stay as they are."""
+    named: Callable[[str], str] = str
+    """The name of a look among those of the record, where some of them may come again."""
 
     async def look(self, name: str, camera: Camera, measure: Callable[[Image], M]) -> Seen[M]:
         """Settle, take the images, measure each in a worker; ``name`` is that of the raw images.
@@ -78,6 +82,7 @@ class Eyes:
         Raises what ``measure`` raises, ``NotSettled``, ``HeadMoved`` when the arm moved meanwhile,
         and before the first look of a camera the faults of its exposure.
         """
+        name = self.named(name)
         await settle(self.arm.guard)
         if self.exposures is not None:
             await self.exposures.find(camera)
@@ -90,7 +95,7 @@ class Eyes:
             taken = await camera.grab()
             image = measured_channel(taken)
             if self.recorder is not None:
-                file = f"raw/{name}-frame-{number}.pgm.zst"
+                file = image_file(name, number)
                 await self.recorder.exposures({file: taken.exposure})
                 kept = TakenImage(name, camera.name, utc_at(taken.time_s))
                 await self.recorder.add(*documents_of_look(name, {file: kept}, {}))
@@ -99,7 +104,14 @@ class Eyes:
             images.append(image)
             found.append(await self.workers.run(measure, image))
         require_unmoved("the arm", self.arm.robot, state.base_T_flange)
-        return Seen(tuple(found), tuple(images), state.base_T_flange, state.joints_rad, time_s)
+        return Seen(
+            tuple(found), tuple(images), state.base_T_flange, state.joints_rad, time_s, name
+        )
+
+
+def image_file(name: str, frame: int = 1) -> str:
+    """The file of an image of a look, where raw images are kept; frames count from 1."""
+    return f"raw/{name}-frame-{frame}.pgm.zst"
 
 
 def measured_channel(image: CameraImage) -> Image:

@@ -1,6 +1,6 @@
 """The process: an antenna module is taken from its tray and plugged (paper, section 2)."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -8,6 +8,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.stated.moves import StatedMove
+from cellctl.errors.records import NotReplayable
 from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
 from cellctl.processes.antenna_module.faults.plugging import (
     FORCE_FAULTS,
@@ -19,7 +20,8 @@ from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, FORCE, ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
-from cellctl.records.entries import RunRecord
+from cellctl.records.entries import Calibration, RunRecord
+from cellctl.records.replay.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
@@ -30,7 +32,7 @@ if TYPE_CHECKING:
     from cellctl.processes.antenna_module.run import PluggingRun
     from cellctl.processes.antenna_module.state import GripperEmpty
     from cellctl.processes.antenna_module.stations import AntennaCell
-    from cellctl.runtime.procedure import Procedure
+    from cellctl.runtime.procedure import Procedure, ProcedureReplay
 
 # What computes is imported where it is used: whoever only reads a cell file loads this module too,
 # and an operator's command must not wait for vision and force.
@@ -178,6 +180,19 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
             raise held
 
     @classmethod
+    def replay(
+        cls,
+        record: RunRecord,
+        read: ReadArtefact,  # noqa: ARG003
+        calibrations: Mapping[str, Calibration],  # noqa: ARG003
+    ) -> Iterator[Replayed]:
+        """Refused, with what the record lacks."""
+        raise NotReplayable(
+            f"run {record.head.number} of {cls.name} does not have the planes in which its images "
+            "were measured, and a taught plug no images"
+        )
+
+    @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
         """Both connectors, what the plan rests on, force over depth."""
         from cellctl.processes.antenna_module.report.pages import pages
@@ -193,6 +208,13 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         if not recipes:
             return ()
         return antenna_procedures(self.cell(recipes[0]), recipes, self.services)
+
+    @classmethod
+    def procedure_replays(cls) -> "Mapping[int, ProcedureReplay]":
+        """From the images, poses and touches that their runs have kept."""
+        from cellctl.processes.antenna_module.procedures.replays import REPLAYS
+
+        return REPLAYS
 
     def cell(self, recipe: AntennaRecipe) -> "AntennaCell":
         """The devices in the roles of a recipe."""

@@ -1,7 +1,7 @@
 """Drives past the references of the cell: gripper marks over camera II, plate under camera I."""
 
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
@@ -15,12 +15,14 @@ from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.drawings import Plate
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.looking import Eyes, nominal
+from cellctl.processes.antenna_module.moves.kept_look import KeptLook
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.moves.turning import (
     Eye,
     TurnDrive,
     camera_2_of,
     first_pose,
+    kept_look,
     look_at_marks,
 )
 from cellctl.processes.antenna_module.roles import REFERENCE_LOOK
@@ -32,6 +34,18 @@ Tell = Callable[[int, int], Awaitable[None]]
 
 
 @dataclass(frozen=True, slots=True)
+class KeptLooks:
+    """The looks of one drive, in the order in which they were taken."""
+
+    marks: list[KeptLook] = field(default_factory=list)
+    """Camera II at the gripper's marks."""
+    above: list[KeptLook] = field(default_factory=list)
+    """Camera I at the plate."""
+    below: list[KeptLook] = field(default_factory=list)
+    """Camera II at the plate."""
+
+
+@dataclass(frozen=True, slots=True)
 class ReferenceDrive:
     """What the drive needs of a run or a procedure."""
 
@@ -39,6 +53,8 @@ class ReferenceDrive:
     plate: Plate
     eyes: Eyes
     tell: Tell
+    kept: KeptLooks = field(default_factory=KeptLooks)
+    """What was looked at, for the record."""
 
     async def looks(self, count: int, *, first: int = 1) -> ReferenceLooks:
         """``count`` looks at the marks and as many of camera I at the plate.
@@ -48,7 +64,7 @@ class ReferenceDrive:
         ``LooksIncomplete`` where marks are not seen, and what moves and images raise.
         """
         mover = Mover(self.facts.cell)
-        turning = TurnDrive(self.facts, self.eyes, mover)
+        turning = TurnDrive(self.facts, self.eyes, mover, self.kept.marks)
         turns: list[TurnStop] = []
         plate_in_1: list[Array] = []
         plate_in_2: list[Array] = []
@@ -71,23 +87,26 @@ class ReferenceDrive:
         base_T_cam1 = facts.plug_cell.base_T_cam1(cell.arm.robot.state().base_T_flange)
         expected = base_T_cam1.inv() * nominal(place)
         eye = Eye(cell.camera_1, facts.camera_1)
-        seen = await look_at_marks(
-            self.eyes, name, eye, self.plate.above, expected=expected, place=place
-        )
-        plate_m = (facts.plug_cell.base_T_cam1(seen.base_T_flange) * first_pose(seen)).translation
-        away_m = float(np.linalg.norm(plate_m - seen.base_T_flange.translation))
-        return np.asarray(plate_m[:2]), away_m
+        marks = self.plate.above
+        seen = await look_at_marks(self.eyes, name, eye, marks, expected=expected, place=place)
+        self.kept.above.append(kept_look(seen, eye, marks, expected=expected, place=place))
+        base_T_plate = facts.plug_cell.base_T_cam1(seen.base_T_flange) * first_pose(seen)
+        return plate_from_above(base_T_plate, seen.base_T_flange)
 
     async def _plate_from_below(self, name: str) -> Array:
         place = self.plate.base_T_plate
         base_T_cam2 = self.facts.plug_cell.cam2.pose.pose
         expected = base_T_cam2.inv() * nominal(place) * _FROM_BELOW
-        seen = await look_at_marks(
-            self.eyes,
-            name,
-            camera_2_of(self.facts),
-            self.plate.below,
-            expected=expected,
-            place=place,
-        )
+        eye, marks = camera_2_of(self.facts), self.plate.below
+        seen = await look_at_marks(self.eyes, name, eye, marks, expected=expected, place=place)
+        self.kept.below.append(kept_look(seen, eye, marks, expected=expected, place=place))
         return np.asarray((base_T_cam2 * first_pose(seen)).translation[:2])
+
+
+def plate_from_above(
+    base_T_plate: RigidTransform, base_T_flange: RigidTransform
+) -> tuple[Array, float]:
+    """x and y of the plate in the axes of the base, and how far it is from the flange, m."""
+    plate_m = base_T_plate.translation
+    away_m = float(np.linalg.norm(plate_m - base_T_flange.translation))
+    return np.asarray(plate_m[:2]), away_m

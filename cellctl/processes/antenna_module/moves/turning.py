@@ -1,6 +1,6 @@
 """Turns the gripper's marks over camera II, about the last joint alone."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from scipy.spatial.transform import RigidTransform
@@ -12,7 +12,8 @@ from cellctl.processes.antenna_module.connector.marks import Marks
 from cellctl.processes.antenna_module.facts import PluggingFacts
 from cellctl.processes.antenna_module.faults.connector import MarksMissing
 from cellctl.processes.antenna_module.faults.plugging import LooksIncomplete
-from cellctl.processes.antenna_module.looking import Eyes, Seen, marks_by
+from cellctl.processes.antenna_module.looking import Eyes, Seen, image_file, marks_by
+from cellctl.processes.antenna_module.moves.kept_look import KeptLook
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.moves.places import turned
 from cellctl.processes.antenna_module.recipe import Place
@@ -36,6 +37,8 @@ class TurnDrive:
     facts: PluggingFacts
     eyes: Eyes
     mover: Mover
+    kept: list[KeptLook] = field(default_factory=list)
+    """What was looked at, for the record."""
 
     async def stop(self, angle_rad: float, name: str) -> TurnStop:
         """Turn there and look: marks less reported flange axis, in the axes of the base.
@@ -53,16 +56,20 @@ class TurnDrive:
         place = Place(pose=recipe.flange_T_plug, height_sigma_mm=recipe.plug_height_sigma_mm)
         base_T_plug = cell.arm.robot.state().base_T_flange * pose_from_xyzabc(recipe.flange_T_plug)
         expected = base_T_cam2.inv() * base_T_plug
-        seen = await look_at_marks(
-            self.eyes,
-            name,
-            camera_2_of(facts),
-            facts.drawings.gripper,
-            expected=expected,
-            place=place,
+        eye, marks = camera_2_of(facts), facts.drawings.gripper
+        seen = await look_at_marks(self.eyes, name, eye, marks, expected=expected, place=place)
+        self.kept.append(
+            kept_look(seen, eye, marks, expected=expected, place=place, angle_rad=angle_rad)
         )
-        marks_m = (base_T_cam2 * first_pose(seen)).translation
-        return TurnStop(angle_rad, np.asarray((marks_m - seen.base_T_flange.translation)[:2]))
+        return turn_stop(angle_rad, base_T_cam2 * first_pose(seen), seen.base_T_flange)
+
+
+def turn_stop(
+    angle_rad: float, base_T_marks: RigidTransform, base_T_flange: RigidTransform
+) -> TurnStop:
+    """Marks as they were seen less the reported flange axis, in the axes of the base."""
+    seen_m = base_T_marks.translation - base_T_flange.translation
+    return TurnStop(angle_rad, np.asarray(seen_m[:2]))
 
 
 def camera_2_of(facts: PluggingFacts) -> Eye:
@@ -82,6 +89,20 @@ async def look_at_marks(
         return await eyes.look(name, eye.camera, measure)
     except MarksMissing as fault:
         raise LooksIncomplete(f"{marks.name}: {fault.detail}") from fault
+
+
+def kept_look(
+    seen: Seen[MeasuredMarks],
+    eye: Eye,
+    marks: Marks,
+    *,
+    expected: RigidTransform,
+    place: Place,
+    angle_rad: float = 0.0,
+) -> KeptLook:
+    """A look as ``look_at_marks`` took it, for the record."""
+    image = image_file(seen.look)
+    return KeptLook(image, eye.model, marks, expected, place, seen.base_T_flange, angle_rad)
 
 
 def first_pose(seen: Seen[MeasuredMarks]) -> RigidTransform:

@@ -1,20 +1,23 @@
 """One drive round a calibration board: the flange at every stop, and what the camera saw there."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
+import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.boards.board import CalibrationBoard, CameraView
 from cellctl.calibration.boards.board_images import BoardImage, detect_camera_view
+from cellctl.calibration.boards.board_record import board_to_record
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.hand_eye.one_wrist import require_one_wrist
 from cellctl.errors.calibration import BoardNotFound, WrongBoard
 from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces import Camera
 from cellctl.interfaces.stereo_camera import Image
-from cellctl.processes.antenna_module.looking import Eyes
+from cellctl.processes.antenna_module.looking import Eyes, image_file
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.moves.start import leave_stations
 from cellctl.processes.antenna_module.procedures.board_poses import swung_poses
@@ -32,17 +35,58 @@ class BoardStop:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class ViewedStop:
+    """One stop before anything was looked for in its image."""
+
+    base_T_flange: RigidTransform
+    image: str
+    """Name of the file."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class BoardDrive:
     """Everything that one drive has shown."""
 
     stops: tuple[BoardStop, ...]
+    """Those from which the board was seen."""
     image_size: tuple[int, int]
     """Width, height in px."""
+    looks: tuple[ViewedStop, ...]
+    """All stops."""
 
     @property
     def views(self) -> tuple[CameraView, ...]:
         """The views of all stops."""
         return tuple(stop.view for stop in self.stops)
+
+    def to_input(self, board: CalibrationBoard) -> dict[str, Any]:
+        """Plain data, from which ``driven_again`` finds the same."""
+        return {
+            "board": board_to_record(board),
+            "looks": [
+                {"image": look.image, "base_T_flange": look.base_T_flange.as_matrix().tolist()}
+                for look in self.looks
+            ],
+        }
+
+
+def driven_again(
+    written: Mapping[str, Any], board: CalibrationBoard, image: Callable[[str], Image]
+) -> BoardDrive:
+    """The drive from its recorded looks; ``image`` reads one by its file.
+
+    Raises the faults of images that show no board.
+    """
+    stops, looks, image_size = [], [], (0, 0)
+    for number, entry in enumerate(written["looks"], start=1):
+        seen = image(entry["image"])
+        image_size = (seen.shape[1], seen.shape[0])
+        base_T_flange = RigidTransform.from_matrix(np.array(entry["base_T_flange"], float))
+        looks.append(ViewedStop(base_T_flange, entry["image"]))
+        view = _find(seen, name=_view_name(number), board=board)
+        if view is not None:
+            stops.append(BoardStop(base_T_flange, view))
+    return BoardDrive(tuple(stops), image_size, tuple(looks))
 
 
 def board_of(cell: AntennaCell) -> CalibrationBoard:
@@ -53,6 +97,11 @@ def board_of(cell: AntennaCell) -> CalibrationBoard:
     if board.symmetric:
         raise WrongBoard(f"{board} looks the same turned by 180°; one side must be odd, one even")
     return board
+
+
+def eyes_of(context: ProcedureContext, cell: AntennaCell) -> Eyes:
+    """One image a look, which goes into the record of the procedure."""
+    return Eyes(cell.arm, cell.workers, recorder=context.recorder, frames=1, named=context.new_look)
 
 
 def camera_of(cell: AntennaCell, setup: Setup) -> Camera:
@@ -89,15 +138,18 @@ async def _stops(
 ) -> tuple[BoardDrive, dict[str, Array]]:
     """The drive, and the joints (rad) by the name of the view."""
     mover, camera = Mover(cell), camera_of(cell, setup)
-    eyes = Eyes(cell.arm, cell.workers, recorder=None, frames=1)
+    eyes = eyes_of(context, cell)
     stops: list[BoardStop] = []
+    looks: list[ViewedStop] = []
     joints: dict[str, Array] = {}
     image_size = (0, 0)
     for number, base_T_flange in enumerate(poses, start=1):
         await context.progress(number, len(poses), "view")
         await mover.to(base_T_flange)
-        name = f"view {number}"
-        seen = await eyes.look(name, camera, partial(_find, name=name, board=board_of(cell)))
+        name = _view_name(number)
+        find = partial(_find, name=name, board=board_of(cell))
+        seen = await eyes.look(f"view-{number}", camera, find)
+        looks.append(ViewedStop(seen.base_T_flange, image_file(seen.look)))
         height, width = seen.images[0].shape
         image_size = (width, height)
         view = seen.frames[0]
@@ -109,7 +161,11 @@ async def _stops(
             joints[name] = seen.joints_rad
         elif number == 1:
             break
-    return BoardDrive(tuple(stops), image_size), joints
+    return BoardDrive(tuple(stops), image_size, tuple(looks)), joints
+
+
+def _view_name(number: int) -> str:
+    return f"view {number}"
 
 
 def _find(image: Image, *, name: str, board: CalibrationBoard) -> CameraView | None:

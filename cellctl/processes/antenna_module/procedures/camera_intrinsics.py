@@ -28,9 +28,10 @@ async def calibrate_camera_on_cell(
     procedure that made it, and the hand-eye calibration is made with intrinsics that have passed.
     """
     drive = await drive_round_board(context, cell, setup)
-    workers = cell.workers
+    workers, board = cell.workers, board_of(cell)
+    await context.keep_input(drive.to_input(board))
     result = await workers.run_within(
-        SOLVE_S, calibrate_single_camera, drive.views, board_of(cell), drive.image_size
+        SOLVE_S, calibrate_single_camera, drive.views, board, drive.image_size
     )
     return ProcedureOutcome(
         kind=CAMERA_1_INTRINSICS if setup is Setup.EYE_IN_HAND else CAMERA_2_INTRINSICS,

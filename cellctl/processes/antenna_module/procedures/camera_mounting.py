@@ -1,7 +1,7 @@
 """Procedures 203 and 204: where camera I sits on the flange, and camera II beside the robot."""
 
 import asyncio
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from cellctl.processes.antenna_module.calibrations import (
 )
 from cellctl.processes.antenna_module.procedures.board_drive import (
     BoardDrive,
+    board_of,
     camera_of,
     drive_round_board,
 )
@@ -59,10 +60,12 @@ async def calibrate_mounting_on_cell(
     serial_number = await camera_of(cell, setup).serial_number()
     snapshot.require_instrument(kind, serial_number)
     drive = await drive_round_board(context, cell, setup)
-    workers = cell.workers
-    result = await workers.run_within(
-        SOLVE_S, mounting_of, drive, snapshot.get(kind), setup, robot_noise(cell.settings.arm)
+    workers, camera, noise = cell.workers, snapshot.get(kind), robot_noise(cell.settings.arm)
+    await context.keep_input(
+        drive.to_input(board_of(cell))
+        | {"setup": setup.value, "camera": camera.to_record(), "noise": asdict(noise)}
     )
+    result = await workers.run_within(SOLVE_S, mounting_of, drive, camera, setup, noise)
     return ProcedureOutcome(
         kind=FLANGE_CAMERA if in_hand else FIXED_CAMERA,
         record=result.to_record(),

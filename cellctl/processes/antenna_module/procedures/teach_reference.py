@@ -1,16 +1,20 @@
 """Procedure 205: where axis, gripper marks and plate are, for later checks to compare with."""
 
+from dataclasses import asdict
+
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, REFERENCE
+from cellctl.processes.antenna_module.chain.cell_figures import ArmFigures
 from cellctl.processes.antenna_module.chain.reference.reference_check import (
     require_nothing_moved,
 )
+from cellctl.processes.antenna_module.chain.reference.reference_looks import ReferenceLooks
 from cellctl.processes.antenna_module.chain.reference.taught_reference import TaughtReference
 from cellctl.processes.antenna_module.chain.teaching.made_with import ReferenceMadeWith
 from cellctl.processes.antenna_module.facts import PluggingFacts, read_facts
-from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.moves.reference_drive import ReferenceDrive
 from cellctl.processes.antenna_module.moves.start import leave_stations
+from cellctl.processes.antenna_module.procedures.board_drive import eyes_of
 from cellctl.processes.antenna_module.procedures.reference_picture import reference_picture
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
@@ -41,15 +45,22 @@ async def teach_reference_on_cell(
         await context.progress(number, total, "look")
 
     plate = facts.required_plate
-    eyes = Eyes(cell.arm, cell.workers, recorder=None, frames=1)
-    looks = await ReferenceDrive(facts, plate, eyes, tell).looks(section.taught_looks)
+    drive = ReferenceDrive(facts, plate, eyes_of(context, cell), tell)
+    looks = await drive.looks(section.taught_looks)
     await Mover(cell).to_taught(HOME)
-    arm = facts.plug_cell.arm
-    taught = TaughtReference(
-        ReferenceMadeWith.of(facts.plug_cell),
-        looks.reading(arm),
-        looks.checks(arm),
+    made_with, plug_cell = ReferenceMadeWith.of(facts.plug_cell), facts.plug_cell
+    await context.keep_input(
+        {
+            "made_with": made_with.to_record(),
+            "arm": asdict(plug_cell.arm),
+            "flange_T_cam1": plug_cell.cam1.pose.pose.as_matrix().tolist(),
+            "base_T_cam2": plug_cell.cam2.pose.pose.as_matrix().tolist(),
+            "marks": [look.to_input() for look in drive.kept.marks],
+            "above": [look.to_input() for look in drive.kept.above],
+            "below": [look.to_input() for look in drive.kept.below],
+        }
     )
+    taught = reference_of(made_with, looks, plug_cell.arm)
     warnings = _since_last_time(facts, taught)
     return ProcedureOutcome(
         kind=REFERENCE,
@@ -59,6 +70,13 @@ async def teach_reference_on_cell(
         picture_png=await cell.workers.run(reference_picture, looks, taught.checks),
         serial_number="",
     )
+
+
+def reference_of(
+    made_with: ReferenceMadeWith, looks: ReferenceLooks, arm: ArmFigures
+) -> TaughtReference:
+    """What is stored of the looks; raises ``TurnInvalid``."""
+    return TaughtReference(made_with, looks.reading(arm), looks.checks(arm))
 
 
 def _since_last_time(facts: PluggingFacts, taught: TaughtReference) -> tuple[str, ...]:

@@ -11,7 +11,12 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.calibration.solvers.tool.tool import MIN_TRAVEL_M, STILL_RAD, calibrate_tool
+from cellctl.calibration.solvers.tool.tool import (
+    MIN_TRAVEL_M,
+    STILL_RAD,
+    ToolResult,
+    calibrate_tool,
+)
 from cellctl.calibration.solvers.tool.tool_picture import tool_picture
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.geometry.pose import MM
@@ -49,7 +54,8 @@ async def touch_tool_on_cell(
         refused = f"not taken, {problem}; " if problem else ""
         if not problem:
             poses.append(pose)
-    result = calibrate_tool(poses[:TOUCHES], poses[TOUCHES:])
+    await context.keep_input({"base_T_flange": [pose.as_matrix().tolist() for pose in poses]})
+    result = tool_of(poses)
     return ProcedureOutcome(
         kind=TOOL,
         record=result.to_record(),
@@ -58,6 +64,14 @@ async def touch_tool_on_cell(
         picture_png=await cell.workers.run(tool_picture, result),
         serial_number="",
     )
+
+
+def tool_of(poses: Sequence[RigidTransform]) -> ToolResult:
+    """The tool from the poses of the flange at all touches, in their order.
+
+    Raises ``PosesNotDiverse`` and ``IllConditioned``.
+    """
+    return calibrate_tool(poses[:TOUCHES], poses[TOUCHES:])
 
 
 def what_is_wrong(pose: RigidTransform, before: Sequence[RigidTransform]) -> str:

@@ -3,6 +3,7 @@
 Only the scale of camera II enters, and how well the arm repeats: no hand-eye calibration, no touch.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -19,10 +20,10 @@ from cellctl.processes.antenna_module.chain.teaching.tool_turn import (
 )
 from cellctl.processes.antenna_module.chain.teaching.turn_picture import turn_picture
 from cellctl.processes.antenna_module.facts import read_facts
-from cellctl.processes.antenna_module.looking import Eyes
 from cellctl.processes.antenna_module.moves.moving import Mover
 from cellctl.processes.antenna_module.moves.start import leave_stations
 from cellctl.processes.antenna_module.moves.turning import TurnDrive
+from cellctl.processes.antenna_module.procedures.board_drive import eyes_of
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import HOME
 from cellctl.processes.antenna_module.stations import AntennaCell
@@ -44,15 +45,24 @@ async def turn_tool_on_cell(
     facts = await read_facts(cell, recipe, services.calibrations, CALIBRATIONS, teaching=True)
     await leave_stations(cell)
     await cell.gripper.open()
-    turning = TurnDrive(facts, Eyes(cell.arm, cell.workers, recorder=None, frames=1), Mover(cell))
+    turning = TurnDrive(facts, eyes_of(context, cell), Mover(cell))
     stops: list[TurnStop] = []
-    in_flange_m: list[Array] = []
+    flanges: list[RigidTransform] = []
     for number, angle_rad in enumerate(turn_angles(LOOKS), start=1):
         await context.progress(number, LOOKS, "look")
         stops.append(await turning.stop(angle_rad, f"turn-{number}"))
-        in_flange_m.append(_in_flange(cell.arm.robot.state().base_T_flange, stops[-1]))
+        flanges.append(cell.arm.robot.state().base_T_flange)
     await Mover(cell).to_taught(HOME)
-    result = _held_against_drawing(calibrate_tool_turn(stops), np.mean(in_flange_m, axis=0), recipe)
+    drawn_m = pose_from_xyzabc(recipe.flange_T_marks).translation[:2]
+    await context.keep_input(
+        {
+            "base_T_cam2": facts.plug_cell.cam2.pose.pose.as_matrix().tolist(),
+            "drawn_m": drawn_m.tolist(),
+            "marks": [look.to_input() for look in turning.kept],
+            "base_T_flange": [flange.as_matrix().tolist() for flange in flanges],
+        }
+    )
+    result = turned_tool(stops, flanges, drawn_m)
     return ProcedureOutcome(
         kind=TOOL_TURN,
         record=result.to_record(),
@@ -63,17 +73,22 @@ async def turn_tool_on_cell(
     )
 
 
+def turned_tool(
+    stops: Sequence[TurnStop], base_T_flange: Sequence[RigidTransform], drawn_m: Array
+) -> ToolTurnResult:
+    """The marks beside the axis, held against their drawing: ``drawn_m`` of shape (2,).
+
+    Raises ``TurnInvalid``.
+    """
+    result = calibrate_tool_turn(stops)
+    in_flange_m = np.mean(list(map(_in_flange, base_T_flange, stops)), axis=0)
+    beside_m = float(np.linalg.norm(in_flange_m - drawn_m))
+    check = LimitCheck("marks beside their drawing", beside_m / MM, _FROM_DRAWING_M / MM, "mm")
+    return replace(result, checks=(*result.checks, check))
+
+
 def _in_flange(base_T_flange: RigidTransform, stop: TurnStop) -> Array:
     """The marks in the axes of the flange, shape (2,). What camera II is wrong by is turned with
     them, and drops out of the mean over both half turns."""
     seen_m = np.append(stop.seen_m, 0.0)
     return np.asarray(base_T_flange.rotation.inv().apply(seen_m))[:2]
-
-
-def _held_against_drawing(
-    result: ToolTurnResult, in_flange_m: Array, recipe: AntennaRecipe
-) -> ToolTurnResult:
-    drawn_m = pose_from_xyzabc(recipe.flange_T_marks).translation[:2]
-    beside_m = float(np.linalg.norm(in_flange_m - drawn_m))
-    check = LimitCheck("marks beside their drawing", beside_m / MM, _FROM_DRAWING_M / MM, "mm")
-    return replace(result, checks=(*result.checks, check))

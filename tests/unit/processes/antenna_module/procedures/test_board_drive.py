@@ -15,6 +15,7 @@ from cellctl.processes.antenna_module.procedures.board_drive import board_of
 from cellctl.processes.antenna_module.roles import BOARD_SHOW, HOME
 from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext
+from tests.rigs.procedure_record import Kept
 
 
 def cell_with(board: str) -> AntennaCell:
@@ -50,7 +51,11 @@ def drive(monkeypatch: pytest.MonkeyPatch, looks: Iterator[str | None]) -> tuple
 
     async def look(_eyes: object, name: str, *_: object) -> object:
         return SimpleNamespace(
-            frames=(next(looks),), images=(np.zeros((4, 6)),), base_T_flange=here, joints_rad=name
+            frames=(next(looks),),
+            images=(np.zeros((4, 6)),),
+            base_T_flange=here,
+            joints_rad=name,
+            look=name,
         )
 
     async def done(*_: object) -> None:
@@ -68,9 +73,8 @@ def drive(monkeypatch: pytest.MonkeyPatch, looks: Iterator[str | None]) -> tuple
         camera_2=SimpleNamespace(name="camera_2"),
         workers=None,
     )
-    context = SimpleNamespace(progress=done)
     return arm, board_drive.drive_round_board(
-        cast(ProcedureContext, context), cast(AntennaCell, cell), Setup.EYE_TO_HAND
+        cast(ProcedureContext, Kept()), cast(AntennaCell, cell), Setup.EYE_TO_HAND
     )
 
 

@@ -1,6 +1,6 @@
 """Procedures 207 and 208: the tool by turning over camera II, and by touches at the panel."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -14,89 +14,28 @@ from cellctl.interfaces import RobotMode
 from cellctl.processes.antenna_module.calibrations import CALIBRATIONS, TOOL, TOOL_TURN
 from cellctl.processes.antenna_module.chain.teaching.tool_turn import TurnStop
 from cellctl.processes.antenna_module.faults.calibration import NobodyTouched
+from cellctl.processes.antenna_module.moves.kept_look import KeptLook
 from cellctl.processes.antenna_module.procedures import touch_tool, turn_tool
 from cellctl.processes.antenna_module.procedures.by_hand import Patience
 from cellctl.processes.antenna_module.procedures.procedure_list import antenna_procedures
-from cellctl.processes.antenna_module.stations import AntennaCell
 from cellctl.runtime.procedure import ProcedureContext
+from tests.rigs.antenna import exact_cell
+from tests.rigs.procedure_record import Kept
+from tests.unit.processes.antenna_module.procedures.panel import (
+    FLANGE_T_TIP,
+    POINT_M,
+    Panel,
+    in_worker,
+    orienting,
+    touched,
+    touching,
+    with_tip_at,
+)
 from tests.unit.processes.antenna_module.steps.bench import Bench
-
-POINT_M = np.array([0.55, 0.1, 0.25])
-FLANGE_T_TIP = pose_from_xyzabc((2.0, -1.0, 205.0, 30.0, 0.0, 0.0))
-
-
-def touching() -> list[RigidTransform]:
-    """The tip on the point: tilted by 45° in four directions, at two turns 90° apart."""
-    poses = []
-    for turn in (0.0, 90.0):
-        for direction in (0.0, 90.0, 180.0, 270.0):
-            tilt = Rotation.from_euler("ZYZ", [direction, 45.0, turn - direction], degrees=True)
-            rotation = tilt * Rotation.from_euler("x", 180.0, degrees=True)
-            poses.append(_with_tip_at(rotation, POINT_M))
-    return poses
-
-
-def orienting() -> list[RigidTransform]:
-    """Poses at the point, 50 mm along x of the tool, and 50 mm to the side of its y."""
-    rotation = Rotation.from_euler("x", 180.0, degrees=True)
-    axes = (rotation * FLANGE_T_TIP.rotation).as_matrix()
-    return [
-        _with_tip_at(rotation, POINT_M + 0.05 * step)
-        for step in (np.zeros(3), axes[:, 0], axes[:, 1])
-    ]
-
-
-def _with_tip_at(rotation: Rotation, place_m: np.ndarray) -> RigidTransform:
-    return RigidTransform.from_components(
-        place_m - rotation.apply(FLANGE_T_TIP.translation), rotation
-    )
-
-
-@dataclass
-class Panel:
-    """An arm that somebody jogs from pose to pose, with the key to manual and back."""
-
-    poses: list[RigidTransform]
-    told: list[str] = field(default_factory=list)
-    asked: int = 0
-
-    def state(self) -> SimpleNamespace:
-        # Still on remote, then manual, then back on remote at the next place.
-        phase = self.asked % 3
-        self.asked += 1
-        mode = RobotMode.MANUAL if phase == 1 else RobotMode.REMOTE
-        pose = self.poses[min(self.asked // 3, len(self.poses)) - 1]
-        return SimpleNamespace(mode=mode, ready=True, moving=False, base_T_flange=pose)
-
-    async def progress(self, done: int, total: int, message: str) -> None:
-        self.told.append(f"{done}/{total} {message}")
-        self.asked = 3 * (done - 1)
-
-
-AT_ONCE = Patience(poll_s=0.0)
-
-
-async def _still(_guard: object) -> None:
-    return
-
-
-async def _in_worker(job: Any, *arguments: object) -> Any:
-    return job(*arguments)
-
-
-async def touched(
-    panel: Panel, monkeypatch: pytest.MonkeyPatch, patience: Patience = AT_ONCE
-) -> Any:
-    monkeypatch.setattr(touch_tool, "settle", _still)
-    arm = SimpleNamespace(robot=panel, guard=None)
-    cell = SimpleNamespace(arm=arm, workers=SimpleNamespace(run=_in_worker))
-    return await touch_tool.touch_tool_on_cell(
-        cast(AntennaCell, cell), cast(ProcedureContext, panel), patience
-    )
 
 
 async def test_touches_give_place_and_axes_of_the_tip(monkeypatch: pytest.MonkeyPatch) -> None:
-    panel = Panel(touching() + orienting())
+    panel = Panel(poses=touching() + orienting())
     outcome = await touched(panel, monkeypatch)
     assert (outcome.kind, outcome.passed) == (TOOL, True)
     result: ToolResult = TOOL.result(outcome.record)
@@ -118,14 +57,14 @@ def test_a_touch_that_is_not_what_was_asked_for_is_not_taken() -> None:
     hardly = RigidTransform.from_rotation(Rotation.from_euler("x", 6.0, degrees=True))
     assert "6° against touch 2" in touch_tool.what_is_wrong(tips[1] * hardly, tips[:4])
     assert "flange was turned" in touch_tool.what_is_wrong(axes[1] * hardly, [*tips, axes[0]])
-    near = _with_tip_at(axes[0].rotation, POINT_M + np.array([4e-3, 0.0, 0.0]))
+    near = with_tip_at(axes[0].rotation, POINT_M + np.array([4e-3, 0.0, 0.0]))
     assert "4 mm from the point" in touch_tool.what_is_wrong(near, [*tips, axes[0]])
 
 
 async def test_a_touch_that_is_not_taken_is_asked_for_again(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    panel = Panel(touching() + orienting())
+    panel = Panel(poses=touching() + orienting())
     slips = iter(["", "turned by 3° against touch 1", *[""] * 20])
     monkeypatch.setattr(touch_tool, "what_is_wrong", lambda *_pose: next(slips))
     outcome = await touched(panel, monkeypatch)
@@ -137,7 +76,7 @@ async def test_a_touch_that_is_not_taken_is_asked_for_again(
 
 
 async def test_nobody_at_the_panel_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    panel = Panel(touching())
+    panel = Panel(poses=touching())
     panel.state = lambda: SimpleNamespace(mode=RobotMode.REMOTE)  # type: ignore[method-assign]
     with pytest.raises(NobodyTouched):
         await touched(panel, monkeypatch, Patience(wait_s=0.0))
@@ -150,6 +89,7 @@ class Turning:
     bench: Bench
     marks_mm: tuple[float, float] = (0.15, -0.1)
     homes: int = 0
+    kept: tuple[KeptLook, ...] = ()
 
     def drive(self, *_of: object) -> "Turning":
         return self
@@ -167,13 +107,10 @@ class Turning:
 
 
 async def turned(turning: Turning, monkeypatch: pytest.MonkeyPatch) -> Any:
-    async def facts(*_of: object, **_how: object) -> None:
-        return
+    async def facts(*_of: object, **_how: object) -> SimpleNamespace:
+        return SimpleNamespace(plug_cell=exact_cell.cell())
 
     async def left(_cell: object) -> None:
-        return
-
-    async def progress(*_how_far: object) -> None:
         return
 
     monkeypatch.setattr(turn_tool, "read_facts", facts)
@@ -182,10 +119,10 @@ async def turned(turning: Turning, monkeypatch: pytest.MonkeyPatch) -> Any:
     monkeypatch.setattr(turn_tool, "Mover", turning.drive)
     run = turning.bench.run()
     cell: Any = run.cell
-    cell.workers = SimpleNamespace(run=_in_worker)
+    cell.workers = SimpleNamespace(run=in_worker)
     return await turn_tool.turn_tool_on_cell(
         cell, run.recipe, cast(Any, SimpleNamespace(calibrations=None)),
-        cast(ProcedureContext, SimpleNamespace(progress=progress)),
+        cast(ProcedureContext, Kept()),
     )  # fmt: skip
 
 
