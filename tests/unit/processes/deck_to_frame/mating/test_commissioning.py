@@ -102,7 +102,7 @@ async def test_a_bound_that_is_too_low_does_not_pass(
     seq = await commission(daemon_rig)
     await daemon_rig.to(State.ABORTED, State.STOPPED)
     assert daemon_rig.port.ended[seq] is not Result.GOOD
-    assert (await daemon_rig.record()).head.fault_number == 614
+    assert (await daemon_rig.record()).head.fault_number == 615
     assert not (daemon_rig.bench.calibrations.path / "contact_stiffness_1.json").exists()
     assert (daemon_rig.bench.calibrations.path / "rejected" / "contact_stiffness_1.json").exists()
 
