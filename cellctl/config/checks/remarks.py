@@ -15,6 +15,8 @@ from cellctl.config.issue import ConfigIssue
 
 _PREFIX = 24
 """Length of the prefix of the usual network of a machine."""
+_PREFIXES = {4: _PREFIX, 6: 64}
+"""The same by the version of the protocol."""
 _PAIRS = (("open_valve", "close_valve"), ("opened_sensor", "closed_sensor"))
 _CHANNELS = 8
 """Channels of one terminal of a coupler."""
@@ -34,6 +36,8 @@ def cell_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
     if cell.simulated:
         return
     yield from _open_to_all(cell)
+    yield from _many_clients(cell)
+    yield from _networks_of_several_robots(cell)
     yield from _relative(cell)
     yield from _other_networks(cell)
     yield from _shared_hosts(cell)
@@ -66,6 +70,41 @@ def _open_to_all(cell: CellConfig) -> Iterator[ConfigIssue]:
     if cell.plc.host in ("0.0.0.0", "::"):
         said = "listens in every network of this PC, that of the robots too; the line needs one"
         yield ConfigIssue("plc.host", repr(cell.plc.host), said)
+
+
+def _many_clients(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """More PCs than a machine has that may command the cell: Modbus has no password."""
+    for client in cell.plc.allowed_clients:
+        network = ipaddress.ip_network(client, strict=False)
+        if network.prefixlen < _PREFIXES[network.version]:
+            said = (
+                f"every PC with one of {network.num_addresses:.3g} addresses may start and stop "
+                "the cell, for Modbus asks no password; the address of the line's PLC is enough"
+            )
+            yield ConfigIssue("plc.allowed_clients", str(list(cell.plc.allowed_clients)), said)
+            return
+
+
+def _networks_of_several_robots(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """A network in place of a controller's address, in which that of another robot lies."""
+    addresses = {
+        name: ipaddress.ip_network(address, strict=False)
+        for name, robot in cell.robots.items()
+        if (address := str(robot.settings.get("robot_address", "")))
+    }
+    for name, network in addresses.items():
+        others = [
+            f"robots.{other}"
+            for other, address in addresses.items()
+            if other != name and address.overlaps(network)
+        ]
+        if network.num_addresses > 1 and others:
+            said = (
+                f"{', '.join(others)} may call here, too: a controller that is set up for another "
+                "arm is told by its robot_name alone; right where its address changes"
+            )
+            written = cell.robots[name].settings["robot_address"]
+            yield ConfigIssue(f"robots.{name}.settings.robot_address", repr(written), said)
 
 
 def _relative(cell: CellConfig) -> Iterator[ConfigIssue]:

@@ -21,6 +21,11 @@ NOTE = "note"
 _RUN, _INSTRUMENT, _REMARK = "run", "instrument", "remark"
 
 
+_DRIEST_PERCENT = 2.0
+"""No hall in which people assemble is drier; below it a value is a share of one, as many
+instruments show it."""
+
+
 @dataclass(frozen=True, slots=True)
 class Surrounding:
     """One quantity of the air round a cell."""
@@ -34,7 +39,7 @@ class Surrounding:
 
 SURROUNDINGS = (
     Surrounding("temperature_deg_c", "temperature", "°C", Limit(-20.0, 60.0)),
-    Surrounding("humidity_percent", "relative humidity", "%", Limit(0.0, 100.0)),
+    Surrounding("humidity_percent", "relative humidity", "%", Limit(_DRIEST_PERCENT, 100.0)),
     Surrounding("pressure_hpa", "air pressure", "hPa", Limit(700.0, 1100.0)),
 )
 
@@ -75,6 +80,8 @@ def add_note(
         limit, unit = by_key[key].plausible, by_key[key].unit
         if limit.judge(value) is not Verdict.PASS:
             allowed = f"allowed {limit.lower:g} to {limit.upper:g}"
+            if unit == "%" and 0.0 < value <= 1.0:
+                allowed += f"; did you mean {100.0 * value:g} %?"
             raise ValueRefused(f"{by_key[key].label} {value:g} {unit}, {allowed}")
     store.run(run)
     texts = {_INSTRUMENT: instrument, _REMARK: remark}

@@ -1,6 +1,6 @@
 """Slips that somebody tried who had read the documents alone."""
 
-from tests.unit.config.mistake import Mistake, Undecided
+from tests.unit.config.mistake import Mistake, Undecided, deck
 
 _MODULE = "module_mass_kg = 0.25"
 
@@ -52,4 +52,55 @@ ANTENNA_PASSES = (
     Undecided(_module("seated_limit_deg", 2.5, ""), "a turn at which all pins are in their holes"),
     Undecided(_insertion("seat_tolerance_mm", 0.4, ""), "an arm whose heights are less certain"),
 )
-FRESH_EYES_PASSES = ANTENNA_PASSES + SENSOR_PASSES
+_TARGET, _MATING = "target_force_n = 35.0", "recipes.0.mating"
+FORCES_PASS = (
+    Undecided(
+        deck(
+            _TARGET,
+            f"{_TARGET}\nrelease_force_n = 34.5",
+            f"{_MATING}.release_force_n",
+            "up to 39.5 N may be left for fastening",
+        ),
+        "fastened under nearly all of the force: a seal may need it",
+    ),
+    Undecided(
+        deck(
+            _TARGET,
+            f"{_TARGET}\ntouch_force_n = 34.0",
+            f"{_MATING}.touch_force_n",
+            "less than half of it, 17 N, is taken for drift",
+        ),
+        "a touch that is noticed late: the sensor may be noisy",
+    ),
+    Undecided(
+        deck(_TARGET, f"{_TARGET}\nrelease_force_n = 16.0\ntouch_force_n = 14.0", _MATING, ""),
+        "touch and rest at the greatest usual share of the target",
+    ),
+)
+
+
+def _network(old: str, new: str, key: str, said: str, reason: str) -> Undecided:
+    return Undecided(Mistake("cell.toml", old, new, key, said), reason)
+
+
+_AUX, _PLC = '"192.168.20.12"', '["192.168.10.2"]'
+_CALLS = "robots.main, robots.aux_2 may call here, too"
+NETWORKS_PASS = (
+    _network(
+        _AUX,
+        '"192.168.0.0/16"',
+        "robots.aux_1.settings.robot_address",
+        _CALLS,
+        "a network that holds other controllers: addresses may change",
+    ),
+    _network(_AUX, '"192.168.20.12/32"', "robots.aux_1", "", "one address, written as a network"),
+    _network(
+        _PLC,
+        '["0.0.0.0/0"]',
+        "plc.allowed_clients",
+        "one of 4.29e+09 addresses may start and stop the cell",
+        "every client: the network may be a closed one",
+    ),
+    _network(_PLC, '["192.168.10.0/24"]', "plc", "", "clients of the network of one machine"),
+)
+FRESH_EYES_PASSES = ANTENNA_PASSES + SENSOR_PASSES + FORCES_PASS + NETWORKS_PASS

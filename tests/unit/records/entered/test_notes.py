@@ -35,6 +35,7 @@ def test_the_newest_value_counts_and_all_are_kept(store: RunStore) -> None:
         ("temperature_deg_c", float("nan")),
         ("humidity_percent", -0.1),
         ("humidity_percent", 100.1),
+        ("humidity_percent", 1.9),
         ("pressure_hpa", 101325.0),
         ("pressure_hpa", 1.013),
     ],
@@ -43,6 +44,13 @@ def test_what_cannot_be_so_is_refused(store: RunStore, key: str, value: float) -
     run = start(store)
     with pytest.raises(ValueRefused, match="allowed"):
         add_note(store, run, ROOT, "anna", {key: value})
+    assert store.audit_log() == []
+
+
+def test_a_humidity_as_a_share_of_one_is_refused_with_what_was_meant(store: RunStore) -> None:
+    run = start(store)
+    with pytest.raises(ValueRefused, match=r"0\.45 %, allowed 2 to 100; did you mean 45 %\?"):
+        add_note(store, run, ROOT, "anna", {"humidity_percent": 0.45})
     assert store.audit_log() == []
 
 

@@ -18,6 +18,7 @@ from cellctl.processes.deck_to_frame.checks.plausible.stored import (
     stored_record,
 )
 from cellctl.processes.deck_to_frame.checks.shared_zones import unlike_box_remarks
+from cellctl.processes.deck_to_frame.mating.planned_settings import RELEASE_BAND_N
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.processes.deck_to_frame.record_names import BOARD_TRANSFER_NAME, PAYLOAD_NAME
 from cellctl.processes.deck_to_frame.roles import FORCE, HEAD_1, HEAD_2, MAIN, MEASURING
@@ -53,6 +54,12 @@ _DOWELS_MM = (
 _TIGHTER_MM, _WIDER_MM = 0.05, 0.2
 """Of the hole of a dowel: pressed in, and with play."""
 _USUAL_PAST_MM, _USUAL_WINDOW_MM = 0.5, 1.0
+_MOST_LEFT = 0.6
+"""Of the target, at the upper end of the band in which relaxing ends: the paper leaves 10 to 20 N
+of its 35 N."""
+_MOST_TOUCH = 0.4
+"""Of the target, which is also the planned peak of the touch: what is noticed later leaves less
+than three fifths of it for the time until the arm stands."""
 
 
 def recipe_remarks(
@@ -67,6 +74,7 @@ def recipe_remarks(
     yield from _thickness_once(recipe, key, deck)
     yield from _compared(recipe, key)
     yield from _late(recipe, key)
+    yield from _forces(recipe, key)
     yield from _corrections(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
@@ -150,6 +158,27 @@ def _late(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
             f"{_USUAL_WINDOW_MM:g} mm is seldom meant"
         )
         yield ConfigIssue(f"{key}.mating.contact_window_mm", f"{mating.contact_window_mm:g}", said)
+
+
+def _forces(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
+    """A touch and a rest that are nearly the force of the mating itself: a figure that was copied,
+    or exchanged with it."""
+    mating = recipe.mating
+    target_n, left_n = mating.target_force_n, mating.release_force_n + RELEASE_BAND_N
+    if left_n > _MOST_LEFT * target_n:
+        said = (
+            f"up to {left_n:g} N may be left for fastening, of target_force_n = {target_n:g}: more "
+            f"than {_MOST_LEFT:g} of it hardly relaxes the joint"
+        )
+        yield ConfigIssue(f"{key}.mating.release_force_n", f"{mating.release_force_n:g}", said)
+    touch_n = mating.touch_force_n
+    if touch_n > _MOST_TOUCH * target_n:
+        said = (
+            f"what presses with less than half of it, {touch_n / 2.0:g} N, is taken for drift: "
+            f"more than {_MOST_TOUCH:g} of target_force_n = {target_n:g} leaves little of the "
+            "planned peak until the arm stands, and a soft contact is met unnoticed"
+        )
+        yield ConfigIssue(f"{key}.mating.touch_force_n", f"{touch_n:g}", said)
 
 
 def _corrections(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
