@@ -53,7 +53,9 @@ class RandomCell:
         robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
         solids = (*(self._changed(solid) for solid in scene.solids), *self.obstacles)
         recipes = tuple(self._recipe(cast(DeckRecipe, one)) for one in scene.cell.recipes)
-        cell = scene.cell.model_copy(update={"robots": robots, "recipes": recipes})
+        # Zones are drawn for one place of the station. Bodies keep the arms apart here.
+        changed = {"robots": robots, "recipes": recipes, "zones": {}}
+        cell = scene.cell.model_copy(update=changed)
         return replace(scene, cell=cell, arms=arms, solids=solids)
 
     def _recipe(self, recipe: DeckRecipe) -> DeckRecipe:

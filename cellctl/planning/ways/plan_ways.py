@@ -8,7 +8,7 @@ import numpy as np
 from cellctl.config.cell import CellConfig
 from cellctl.config.devices import WayConfig
 from cellctl.config.stated.moves import MoveKind, StatedMove
-from cellctl.errors.config import NoFreeWay
+from cellctl.errors.config import NoFreeWay, PlaceUnreachable
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.arm import PlannedArm
 from cellctl.planning.scene.cell_scene import CellScene
@@ -61,6 +61,9 @@ def plan_ways(scene: CellScene, *, seed: int, search_s: float) -> Iterator[Plann
             found = SweptGap(around.narrowest(at_rad), at_rad)
             if fault := gap_fault(f"{move.robot}: {place.label}", found):
                 raise fault
+            # Else the search would look for a way to a place that no way may lead to.
+            if refusal := around.refusal(at_rad):
+                raise PlaceUnreachable(f"{move.robot}: {place.label}: {refusal}")
         try:
             way_rad = free_way(around, ends[0], ends[1], seed=seed, search_s=search_s)
         except NoFreeWay as fault:

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config import load_cell
-from cellctl.errors.config import PlanningError
+from cellctl.errors.config import PlaceUnreachable, PlanningError
 from cellctl.planning.model.shapes import BoxShape
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.scene.solid import Solid
@@ -84,3 +84,14 @@ def test_an_end_that_is_not_free_is_refused_with_the_reason() -> None:
     blocked = replace(scene, solids=(*scene.solids, box_at(tuple(flange.translation))))
     with pytest.raises(PlanningError, match="obstacle"):
         main_way(blocked)
+
+
+def test_an_end_in_a_zone_in_which_another_arm_stands_is_refused_without_a_search() -> None:
+    scene = deck_scene()
+    zone = scene.cell.zones["beside_head_2"]
+    everywhere = {"min_mm": (-9e3, -9e3, -9e3), "max_mm": (9e3, 9e3, 9e3)}
+    shares = {name: share.model_copy(update=everywhere) for name, share in zone.robots.items()}
+    zones = {"beside_head_2": zone.model_copy(update={"robots": shares})}
+    closed = replace(scene, cell=scene.cell.model_copy(update={"zones": zones}))
+    with pytest.raises(PlaceUnreachable, match=r"comes into zone beside_head_2"):
+        main_way(closed)
