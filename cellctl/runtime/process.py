@@ -76,6 +76,9 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     ``P`` is what is known before a run, ``R`` an open run, ``S`` what the first step takes.
     """
 
+    no_replay: ClassVar[str] = "cannot be computed anew: its process does not know how"
+    """Why ``replay`` is refused, for a process that has none: words after "run N of NAME"."""
+
     spoiled_by: ClassVar[frozenset[type[CellError]]] = frozenset()
     """Faults that say that the part is bad, where the run itself went as it should."""
 
@@ -147,7 +150,7 @@ class Process(ProcessDefinition, Generic[P, R, S]):
         Called without a cell, like ``report``; ``calibrations`` of the store by their ids. Raises
         ``NotReplayable``.
         """
-        raise NotReplayable(f"the process {record.head.process} cannot do that")
+        raise NotReplayable(f"run {record.head.number} of {record.head.process} {cls.no_replay}")
 
     def procedures(self) -> Sequence[Procedure]:
         """Calibrations and other measurements of Maintenance, by their numbers."""

@@ -1,6 +1,6 @@
 """The process: an antenna module is taken from its tray and plugged (paper, section 2)."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -8,7 +8,6 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.stated.moves import StatedMove
-from cellctl.errors.records import NotReplayable
 from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
 from cellctl.processes.antenna_module.faults.plugging import (
     FORCE_FAULTS,
@@ -20,8 +19,7 @@ from cellctl.processes.antenna_module.last_check import LastCheck
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import ARM, CAMERA_1, CAMERA_2, FORCE, ROLES
 from cellctl.processes.antenna_module.settings import AntennaSettings
-from cellctl.records.entries import Calibration, RunRecord
-from cellctl.records.replay.replayed import Replayed
+from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.process import CellServices, Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
@@ -42,6 +40,9 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
     """System B: find, pick, look from below, look at the socket, plug, verify."""
 
     name = "antenna-module"
+    no_replay = (
+        "does not have the planes in which its images were measured, and a taught plug no images"
+    )
     recipe_model = AntennaRecipe
     settings_model = AntennaSettings
     roles = ROLES
@@ -178,19 +179,6 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
                 held = fault
         if held is not None:
             raise held
-
-    @classmethod
-    def replay(
-        cls,
-        record: RunRecord,
-        read: ReadArtefact,  # noqa: ARG003
-        calibrations: Mapping[str, Calibration],  # noqa: ARG003
-    ) -> Iterator[Replayed]:
-        """Refused, with what the record lacks."""
-        raise NotReplayable(
-            f"run {record.head.number} of {cls.name} does not have the planes in which its images "
-            "were measured, and a taught plug no images"
-        )
 
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:

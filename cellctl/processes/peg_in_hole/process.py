@@ -1,6 +1,6 @@
 """The process: a peg finds its hole by touch and is inserted (study of insertion by touch)."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
@@ -8,7 +8,6 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.config.stated.moves import StatedMove
-from cellctl.errors.records import NotReplayable
 from cellctl.processes.peg_in_hole.faults import (
     HoleAbsent,
     HoleBlocked,
@@ -19,8 +18,7 @@ from cellctl.processes.peg_in_hole.faults import (
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import FORCE, ROLES
 from cellctl.processes.peg_in_hole.settings import PegSettings
-from cellctl.records.entries import Calibration, RunRecord
-from cellctl.records.replay.replayed import Replayed
+from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
 from cellctl.runtime.process import Prepared, Process, RunContext
 from cellctl.runtime.steps import Steps
@@ -40,6 +38,10 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
     """System C: approach, touch the face, search, insert, verify."""
 
     name = "peg-in-hole"
+    no_replay = (
+        "has every tick, and not which of them a touch, a chirp or a step was computed from; the "
+        "curve of an insertion is judged anew by `cellctl judge-insertion`"
+    )
     recipe_model = PegRecipe
     settings_model = PegSettings
     roles = ROLES
@@ -141,20 +143,6 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
 
         for cell in self._cells():
             await show_force_on_tip(cell)
-
-    @classmethod
-    def replay(
-        cls,
-        record: RunRecord,
-        read: ReadArtefact,  # noqa: ARG003
-        calibrations: Mapping[str, Calibration],  # noqa: ARG003
-    ) -> Iterator[Replayed]:
-        """Refused, with what the record lacks."""
-        raise NotReplayable(
-            f"run {record.head.number} of {cls.name} has every tick, and not which of them a "
-            "touch, a chirp or a step was computed from; the curve of an insertion is judged anew "
-            "by `cellctl judge-insertion`"
-        )
 
     @classmethod
     def report(cls, record: RunRecord, read: ReadArtefact) -> ProcessPages:
