@@ -213,7 +213,8 @@ def _input(
             {
                 "role": role.value,
                 "base_R_sensor_xyzw": reading.base_R_sensor.as_quat().tolist(),
-                "wrench_n_n_m": reading.wrench.tolist(),
+                "force_n": reading.wrench[:3].tolist(),
+                "moment_n_m": reading.wrench[3:].tolist(),
                 # The mean can be computed anew from the recording of the run, which has them all.
                 "samples": len(reading.times_s),
                 "from_s": context.record.recorded_at_s(float(reading.times_s[0])),

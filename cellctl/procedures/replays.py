@@ -91,7 +91,7 @@ def replay_payload(run: RecordedRun, name: str) -> Iterator[Replayed]:
     yield from _still_wrenches(run, given)
     poses = PoseRecord(
         Rotation.from_quat([pose["base_R_sensor_xyzw"] for pose in given["poses"]]),
-        np.array([pose["wrench_n_n_m"] for pose in given["poses"]], float),
+        np.array([_wrench(pose) for pose in given["poses"]], float),
         tuple(PoseRole(pose["role"]) for pose in given["poses"]),
     )
     load = None if given["load"] is None else LoadConfig.model_validate(given["load"])
@@ -127,7 +127,12 @@ def _still_wrenches(run: RecordedRun, given: Mapping[str, Any]) -> Iterator[Repl
         yield Replayed(measurement, "samples", "", pose["samples"], int(inside.sum()))
         if inside.any():
             mean = wrenches[inside].mean(axis=0).tolist()
-            yield from compare(measurement, WRENCH, pose["wrench_n_n_m"], mean, FORCE_RESOLUTION)
+            yield from compare(measurement, WRENCH, _wrench(pose), mean, FORCE_RESOLUTION)
+
+
+def _wrench(pose: Mapping[str, Any]) -> list[float]:
+    """The mean that the procedure took at one pose: N and N·m, shape (6,)."""
+    return [*pose["force_n"], *pose["moment_n_m"]]
 
 
 def _samples(run: RecordedRun, sensor: str) -> tuple[np.ndarray, np.ndarray]:

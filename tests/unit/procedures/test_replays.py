@@ -227,7 +227,7 @@ async def test_a_payload_from_the_samples_of_its_poses(
 
 async def test_another_mean_of_a_pose_is_seen_in_the_payload(weighed: RecordedRun) -> None:
     def press(given: dict[str, Any]) -> None:
-        given["poses"][0]["wrench_n_n_m"][2] += 5.0
+        given["poses"][0]["force_n"][2] += 5.0
 
     found = differing(with_input(weighed, press))
     assert found["pose 1: fz_n"] == pytest.approx(-5.0, abs=1e-3), "the samples are those they were"

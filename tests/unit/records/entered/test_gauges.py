@@ -50,7 +50,9 @@ def test_the_list_of_runs_says_so(store: RunStore, run: int) -> None:
 
 
 def _listed(store: RunStore, run: int) -> str:
-    listed = CliRunner().invoke(app, ["list", "--data-dir", str(store.path)])
+    listed = CliRunner().invoke(
+        app, ["list", "--data-dir", str(store.path)], env={"COLUMNS": "120"}
+    )
     (line,) = (line for line in listed.stdout.splitlines() if line.split()[0] == str(run))
     return line.rstrip()
 
