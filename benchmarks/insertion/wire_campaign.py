@@ -22,6 +22,7 @@ from benchmarks.campaign import run_seed
 from benchmarks.insertion.cycle_campaign import CELLS
 from benchmarks.insertion.cycles import CycleOutcome, run_cycle
 from benchmarks.insertion.farmed import shipped_cell
+from benchmarks.paired import mean_difference
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from fakes.scenes.socket.part import nominal_fit
@@ -117,12 +118,11 @@ def table(cell: str, trials: Sequence[Trial]) -> Table:
         "wire less without",
     )
     for key, title in FIGURES:
-        pairs = np.array([(one.wire[key], one.without[key]) for one in good]).reshape(-1, 2)
+        pairs = np.array([(one.without[key], one.wire[key]) for one in good]).reshape(-1, 2)
         if len(pairs) > 1:
-            columns = [f"{np.median(some):.3f} / {some.max():.3f}" for some in pairs.T]
-            differences = pairs[:, 0] - pairs[:, 1]
-            sigma = differences.std(ddof=1) / np.sqrt(len(pairs))
-            shown.add_row(title, *columns, f"{differences.mean():+.3f} ± {sigma:.3f}")
+            without, wire = (f"{np.median(some):.3f} / {some.max():.3f}" for some in pairs.T)
+            mean, sigma = mean_difference(pairs)
+            shown.add_row(title, wire, without, f"{mean:+.3f} ± {sigma:.3f}")
     return shown
 
 

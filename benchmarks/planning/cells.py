@@ -50,13 +50,11 @@ class RandomCell:
         """
         scene = read_model(load_cell(CELL_FILE), model_path(CELL_FILE), CELL_FILE.parent)
         arms = {name: self._arm(arm, follow=name in follow) for name, arm in scene.arms.items()}
-        robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
         solids = (*(self._changed(solid) for solid in scene.solids), *self.obstacles)
         recipes = tuple(self._recipe(cast(DeckRecipe, one)) for one in scene.cell.recipes)
         # Zones are drawn for one place of the station. Bodies keep the arms apart here.
-        changed = {"robots": robots, "recipes": recipes, "zones": {}}
-        cell = scene.cell.model_copy(update=changed)
-        return replace(scene, cell=cell, arms=arms, solids=solids)
+        cell = scene.cell.model_copy(update={"recipes": recipes, "zones": {}})
+        return with_arms(replace(scene, cell=cell, solids=solids), arms)
 
     def _recipe(self, recipe: DeckRecipe) -> DeckRecipe:
         # The base of the main arm is the origin of the cell, and its axes are those of the cell.
@@ -91,6 +89,12 @@ def taught_at(arm: PlannedArm, pose: str, joints_rad: Array) -> PlannedArm:
     """The arm with this pose taught anew."""
     poses_deg = {**arm.config.poses_deg, pose: tuple(np.degrees(joints_rad).tolist())}
     return replace(arm, config=arm.config.model_copy(update={"poses_deg": poses_deg}))
+
+
+def with_arms(scene: CellScene, arms: Mapping[str, PlannedArm]) -> CellScene:
+    """The scene with these arms as they are configured now."""
+    robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
+    return replace(scene, cell=scene.cell.model_copy(update={"robots": robots}), arms=arms)
 
 
 def random_cell(seed: int) -> RandomCell:

@@ -21,6 +21,7 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.campaign import run_seed, told
+from benchmarks.paired import mean_difference
 from cellctl.geometry.pose import Array
 from fakes.demo.ship import ship
 
@@ -125,7 +126,7 @@ def table(taught: Sequence[dict[str, Any]], planned: Sequence[dict[str, Any]]) -
         pairs = _pairs(taught, planned, key)
         if len(pairs) > 1:
             columns = [f"{np.median(some):.4f} / {some.max():.4f}" for some in pairs.T]
-            mean, sigma = _difference(pairs)
+            mean, sigma = mean_difference(pairs)
             shown.add_row(title, *columns, f"{mean:+.4f} ± {sigma:.4f}")
     return shown
 
@@ -134,7 +135,7 @@ def above(taught: Sequence[dict[str, Any]], planned: Sequence[dict[str, Any]]) -
     """Figures of which the planned cell has more, by more than the scatter of the differences."""
     found = []
     for key in NOT_ABOVE:
-        mean, sigma = _difference(_pairs(taught, planned, key))
+        mean, sigma = mean_difference(_pairs(taught, planned, key))
         if mean > _SIGMAS * sigma:
             found.append(key)
     return found
@@ -148,12 +149,6 @@ def _pairs(taught: Sequence[dict[str, Any]], planned: Sequence[dict[str, Any]], 
         if key in one and key in other
     ]
     return np.array(both, dtype=float).reshape(-1, 2)
-
-
-def _difference(pairs: Array) -> tuple[float, float]:
-    """Mean of planned less taught, and the standard deviation of that mean."""
-    differences = pairs[:, 1] - pairs[:, 0]
-    return float(differences.mean()), float(differences.std(ddof=1) / np.sqrt(len(differences)))
 
 
 if __name__ == "__main__":

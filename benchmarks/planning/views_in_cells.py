@@ -6,9 +6,9 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.planning.cells import DECKS_M, RandomCell, taught_at
+from benchmarks.planning.cells import DECKS_M, RandomCell, taught_at, with_arms
 from cellctl.config.stated.views import StatedHead, StatedMeasurement, StatedPart
-from cellctl.geometry.pose import Array
+from cellctl.geometry.pose import MM, Array
 from cellctl.planning.scene.cell_scene import CellScene
 from cellctl.planning.views.plan_viewpoints import (
     PlannedViews,
@@ -47,10 +47,9 @@ def with_planned_views(drawn: RandomCell) -> ViewedCell:
     arms = dict(scene.arms)
     for head, viewpoint in zip(statement.heads, views.best.viewpoints, strict=True):
         arms[head.robot] = taught_at(arms[head.robot], head.pose, viewpoint.joints_rad)
-    robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
-    cell = scene.cell.model_copy(update={"robots": robots})
-    planned = replace(scene, cell=cell, arms=arms)
-    slack_mm = _least_slack_m(planned, statement) * 1e3 if _all_in_images(planned, views) else -1.0
+    planned = with_arms(scene, arms)
+    seen = _all_in_images(planned, views)
+    slack_mm = _least_slack_m(planned, statement) / MM if seen else -1.0
     return ViewedCell(planned, views.best.predicted.worst, slack_mm)
 
 

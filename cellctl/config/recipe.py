@@ -1,8 +1,8 @@
 """The keys that the recipes of all processes have in common."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, TypeVar
 
 from pydantic import Field
 
@@ -44,3 +44,11 @@ class Recipe(Section):
         # By default the device with the role's own name, so that the usual cell needs no table of
         # roles.
         return self.roles.get(role, role)
+
+
+R = TypeVar("R", bound=Recipe)
+
+
+def first_of_each(recipes: Sequence[R], role: str) -> list[R]:
+    """The first recipe of each device in a role, for what is done once for each device."""
+    return list({recipe.device(role): recipe for recipe in reversed(recipes)}.values())

@@ -120,16 +120,8 @@ class CalibrationStore:
         A kind of each recipe means the calibrations of all recipes. Raises
         ``CalibrationNotStored``.
         """
-        for tell in self.on_invalidated:
-            # Before the markers are written, so that nothing measured with a calibration is still
-            # combined while that becomes invalid.
-            tell()
         names = self.names()
-        found = [name for kind in kinds for name in names if kind.includes(name)]
-        for name in found:
-            mark_invalid(self.path, name, reason, self._now())
-            self._validity.forget(name)
-        return [one for name in found if (one := self._readable(name)) is not None]
+        return self._mark([name for kind in kinds for name in names if kind.includes(name)], reason)
 
     def refute(self, kind: CalibrationKind[Any], reason: str) -> StoredCalibration | None:
         """Mark one calibration as invalid whether it was ever made or not; what it was.
@@ -138,11 +130,7 @@ class CalibrationStore:
         the earlier result nor with the bound of the recipe until a new one passes. Raises
         ``CalibrationNotStored``.
         """
-        for tell in self.on_invalidated:
-            tell()
-        mark_invalid(self.path, kind.name, reason, self._now())
-        self._validity.forget(kind.name)
-        return self._readable(kind.name)
+        return next(iter(self._mark([kind.name], reason)), None)
 
     def put_aside(
         self, kind: CalibrationKind[Any], record: Mapping[str, Any], picture_png: bytes | None
@@ -229,6 +217,18 @@ class CalibrationStore:
             if kind.includes(name):
                 return kind.for_recipe(int(name.rpartition("_")[2]))
         return unparsed(name)
+
+    def _mark(self, names: Iterable[str], reason: str) -> list[StoredCalibration]:
+        """Mark calibrations as invalid; what there was of them."""
+        for tell in self.on_invalidated:
+            # Before the markers are written, so that nothing measured with a calibration is still
+            # combined while that becomes invalid.
+            tell()
+        names = list(names)
+        for name in names:
+            mark_invalid(self.path, name, reason, self._now())
+            self._validity.forget(name)
+        return [one for name in names if (one := self._readable(name)) is not None]
 
     def _required(
         self, kinds: list[CalibrationKind[Any]], until: datetime

@@ -54,16 +54,15 @@ def hold(socket: SocketOption = None) -> None:
     """Pause at the next safe point."""
     client = DaemonClient(socket)
     client.command(PlainCommand(request="hold"))
-    begun: set[str] = set()
+    told: set[str] = set()
 
     def tell_late(report: StatusReport) -> None:
         # Loaded when the command has been given, as in ``_tell``.
-        from cellctl.cli.operator.status_screen import NO_SAFE_POINT
+        from cellctl.cli.operator.status_screen import NO_SAFE_POINT, hold_is_late
 
-        late = report.hold_requested and not report.safe_point_ahead
-        if late and report.step not in begun:
+        if hold_is_late(report) and report.step not in told:
+            told.add(report.step)
             typer.echo(f"{report.step}: {NO_SAFE_POINT}", err=True)
-        begun.update((report.step,) if late else ())
 
     with _going_on("the Hold stays asked for: `cellctl unhold` goes on once it is held"):
         # Without a time-out: how long it is to the next safe point is a matter of the step.

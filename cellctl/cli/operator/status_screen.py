@@ -133,10 +133,15 @@ def _step(report: StatusReport) -> str:
     return report.step + (f", pass {report.iteration}" if report.iteration else "")
 
 
+def hold_is_late(report: StatusReport) -> bool:
+    """Whether a Hold was asked for that nothing obeys before the end of the run."""
+    return report.hold_requested and not report.safe_point_ahead
+
+
 def _next(report: StatusReport) -> str:
     """What an operator does now, in words."""
     if report.state != report.state_requested:
-        late = report.hold_requested and not report.safe_point_ahead
+        late = hold_is_late(report)
         return f"wait; the Hold comes too late: {NO_SAFE_POINT}" if late else "wait"
     if report.state == "ABORTED":
         cause = "remove the cause of the fault" if report.faults else "look why it was aborted"

@@ -10,6 +10,9 @@ from cellctl.planning.ways.sweep import sweep
 
 RESERVE_M = 0.005
 """What the search keeps beyond the margins, so that points may be rounded and cut short."""
+WAY_RESERVE_M = RESERVE_M / 2
+"""What a way keeps: less than the tree has kept, or its own lines would not pass; more than
+nothing, so that points may still be rounded."""
 
 
 def is_free_way(around: Surroundings, way_rad: Array, extra_m: float = 0.0) -> bool:
@@ -21,9 +24,7 @@ def is_free_way(around: Surroundings, way_rad: Array, extra_m: float = 0.0) -> b
 
 def is_free_with_reserve(around: Surroundings, way_rad: Array) -> bool:
     """As ``is_free_way``, for points that may still be rounded."""
-    # Less than the tree has kept, or its own lines would not pass; more than nothing, so that
-    # points may still be rounded.
-    return is_free_way(around, way_rad, RESERVE_M / 2)
+    return is_free_way(around, way_rad, WAY_RESERVE_M)
 
 
 def _looks(way_rad: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 from cellctl.planning.scene.surroundings import Surroundings
-from cellctl.planning.ways.free import RESERVE_M, is_free_with_reserve
+from cellctl.planning.ways.free import WAY_RESERVE_M, is_free_with_reserve
 from cellctl.planning.ways.travel import travel_s
 
 _TRIES = 400
@@ -63,5 +63,5 @@ def _lines_free(around: Surroundings, lines_rad: Array) -> bool:
     # Most steps lead into something: a few looks find that sooner than a sweep that begins at the
     # free end.
     looks = [np.linspace(a, b, _LOOKS) for a, b in pairwise(lines_rad)]
-    rough = all(around.has_room(at_rad, RESERVE_M / 2) for at_rad in np.vstack(looks))
+    rough = all(around.has_room(at_rad, WAY_RESERVE_M) for at_rad in np.vstack(looks))
     return rough and is_free_with_reserve(around, lines_rad)

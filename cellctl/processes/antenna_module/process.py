@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.recipe import Recipe
+from cellctl.config.recipe import Recipe, first_of_each
 from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
 from cellctl.processes.antenna_module.faults.plugging import (
@@ -169,9 +169,8 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         from cellctl.processes.antenna_module.stations import antenna_recipes
 
         recipes = antenna_recipes(self.services.cell.config)
-        by_arm = {recipe.device(FORCE): recipe for recipe in reversed(recipes)}
         held: ModuleInGripper | None = None
-        for recipe in by_arm.values():
+        for recipe in first_of_each(recipes, FORCE):
             try:
                 await leave_stations(self.cell(recipe))
             # The other arms leave their stations all the same.

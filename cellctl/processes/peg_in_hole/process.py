@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
-from cellctl.config.recipe import Recipe
+from cellctl.config.recipe import Recipe, first_of_each
 from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.peg_in_hole.faults import (
     HoleAbsent,
@@ -172,5 +172,4 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         from cellctl.processes.peg_in_hole.stations import peg_recipes
 
         recipes = peg_recipes(self.services.cell.config)
-        by_arm = {recipe.device(FORCE): recipe for recipe in reversed(recipes)}
-        return [self.cell(recipe) for recipe in by_arm.values()]
+        return [self.cell(recipe) for recipe in first_of_each(recipes, FORCE)]

@@ -25,7 +25,7 @@ _ROUNDING_MM = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
-class _Part:
+class _HeldPart:
     """Where a part lies, in a frame of which z is across its mating face; mm."""
 
     face_mm: tuple[float, float]
@@ -71,7 +71,7 @@ def modelled_part_issues(
     main = ArmsInRoles(cell, recipe).main
     face = WrittenValue(f"{key}.face_mm", str(list(recipe.face_mm)))
     thick_mm, within_mm = recipe.deck_thickness_mm, recipe.station_tolerance_mm
-    deck = _Part(recipe.face_mm, -thick_mm, 0.0, within_mm)
+    deck = _HeldPart(recipe.face_mm, -thick_mm, 0.0, within_mm)
     yield from _unheld(
         model,
         _named(model.at_flange.get(main, ()), _DECK),
@@ -88,7 +88,7 @@ def modelled_part_issues(
         yield from _unheld(
             model,
             _named(model.fixtures, _FRAME),
-            _Part(recipe.face_mm, 0.0, 0.0, within_mm),
+            _HeldPart(recipe.face_mm, 0.0, 0.0, within_mm),
             cell_T_frame,
             (WrittenValue(f"{key}.base_T_frame", str(list(recipe.base_T_frame))), face),
         )
@@ -101,7 +101,7 @@ def _named(boxes: Iterable[ModelBox], name: str) -> list[ModelBox]:
 def _unheld(
     model: StatedModel,
     boxes: Sequence[ModelBox],
-    part: _Part,
+    part: _HeldPart,
     there_T_part: RigidTransform,
     against: tuple[WrittenValue, ...],
 ) -> Iterator[ConfigIssue]:
@@ -123,5 +123,5 @@ def _unheld(
     yield ConfigIssue(f"{model.file}: {box.key}", value, allowed, against=against)
 
 
-def _missed(box: ModelBox, part: _Part, there_T_part: RigidTransform) -> str:
+def _missed(box: ModelBox, part: _HeldPart, there_T_part: RigidTransform) -> str:
     return part.missed_by(there_T_part.inv() * pose_from_xyzabc(box.at), box.size_mm)
