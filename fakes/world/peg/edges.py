@@ -13,6 +13,7 @@ from typing import Final
 from fakes.world.peg.attitude import Vector3
 from fakes.world.peg.contact import Contact
 from fakes.world.peg.fit import Fit
+from fakes.world.peg.tilted import edge_azimuths, looks_round
 
 TO_CHAMFER: Final = math.sqrt(2.0) - 1.0
 """Slope of the line that halves the angle between a chamfer of 45° and the wall or face at it."""
@@ -23,7 +24,7 @@ _DESCENTS: Final = 8
 _ACROSS: Final = math.cos(math.pi / 8)
 _ALONG: Final = math.sin(math.pi / 8)
 """Parts of the shoulder's normal, which halves the angle between those of wall and chamfer."""
-_ON_CHAMFER, _ON_WALL, _ON_SHOULDER = 16, 18, 44
+_ON_CHAMFER, _ON_WALL, _ON_SHOULDER, _ON_OTHER_WALL = 16, 18, 44, 50
 _OUTER: Final = 23
 """What the outer edge adds to these numbers."""
 
@@ -38,10 +39,10 @@ class Edge:
     number: int
 
     def contacts(self, tip: Vector3, axis: Vector3) -> Iterator[Contact]:
-        """Contacts: at most one on the chamfer, one on the wall, two on the shoulder of the peg."""
+        """Contacts: at most one on the chamfer, two on the wall, two on the shoulder of the peg."""
         up = (self.level_m - tip[2]) / axis[2]
         offset = (tip[0] + up * axis[0], tip[1] + up * axis[1])
-        found = [self._on_wall(tip, axis, up, offset)]
+        found = [*self._on_walls(tip, axis, up, offset)]
         if self.fit.peg_chamfer_m > 0:
             found.append(self._on_chamfer(tip, axis, up))
         if any(found):
@@ -99,14 +100,34 @@ class Edge:
             *lever, length, up + self.radius_m,
         )  # fmt: skip
 
-    def _on_wall(
+    def _on_walls(
         self, tip: Vector3, axis: Vector3, up: float, offset: tuple[float, float]
+    ) -> Iterator[Contact | None]:
+        """One on the wall of a peg that looks round from above, else one on each side of it."""
+        dx, dy = offset
+        if looks_round(self.fit, axis):
+            distance = math.hypot(dx, dy)
+            if distance > 1e-15:
+                towards = (dx / distance, dy / distance)
+                yield self._on_wall(_ON_WALL, tip, axis, towards, distance, (distance, up))
+            return
+        sides = edge_azimuths(self.radius_m, offset, axis)
+        for slot, (ex, ey, around, along) in zip((_ON_WALL, _ON_OTHER_WALL), sides, strict=True):
+            turning = (around, up + along)
+            yield self._on_wall(slot, tip, axis, (ex, ey), dx * ex + dy * ey, turning)
+
+    def _on_wall(
+        self,
+        slot: int,
+        tip: Vector3,
+        axis: Vector3,
+        towards: tuple[float, float],
+        distance: float,
+        turning: tuple[float, float],
     ) -> Contact | None:
-        (sx, sy, sz), edge = axis, self.radius_m
-        distance = math.hypot(*offset)
-        if distance < 1e-15:
-            return None
-        ex, ey = offset[0] / distance, offset[1] / distance
+        """``distance``: by which the axis of the peg is off in this direction, at this height.
+        ``turning``: the last two of the contact."""
+        (sx, sy, sz), (ex, ey), edge = axis, towards, self.radius_m
         slope = (ex * sx + ey * sy) / sz
         lengthened = math.sqrt(1.0 + slope * slope)
         over = distance + self.fit.peg_radius_m * lengthened - edge
@@ -119,9 +140,9 @@ class Edge:
         if nearest * over >= along - self.fit.peg_chamfer_m:
             return None
         return Contact(
-            _ON_WALL + self.number, over / lengthened, self.fit.normal_n_m,
+            slot + self.number, over / lengthened, self.fit.normal_n_m,
             -ex / lengthened, -ey / lengthened, slope / lengthened,
-            lx, ly, lz, distance, up,
+            lx, ly, lz, *turning,
         )  # fmt: skip
 
     def _on_shoulder(self, tip: Vector3, axis: Vector3) -> Iterator[Contact]:

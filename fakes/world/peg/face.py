@@ -21,9 +21,10 @@ _NEAR_AXIS = 0.01
 """Share of a ring's radius up to which the first order does."""
 _CONE_ROUNDS = 4
 
-FacePoint = tuple[int, float, float, float, float]
-"""Number of the place (0 to 5), x, y, height of the peg's bottom over it (m), and by how far the
-bottom reaches over the face there (m)."""
+FacePoint = tuple[int, float, float, float, float, Vector3]
+"""Number of the place (0 to 5), x, y, height of the peg's bottom over it (m), by how far the
+bottom reaches over the face there (m), and the direction in which the face pushes."""
+_UP: Vector3 = (0.0, 0.0, 1.0)
 
 
 def height_map(
@@ -58,18 +59,18 @@ def carrying_points(fit: Fit, tip: Vector3, axis: Vector3) -> Iterator[FacePoint
         px, py = x + rim * sz * ex, y + rim * sz * ey
         rho = math.hypot(px, py)
         if mouth < rho < outer:
-            yield 0, px, py, z - rim * lean, min(rho - mouth, outer - rho)
+            yield 0, px, py, z - rim * lean, min(rho - mouth, outer - rho), _UP
         bx, by = outer * ex, outer * ey
         if outer < math.inf and math.hypot(bx - x, by - y) < rim:
-            yield 5, bx, by, z - ((bx - x) * sx + (by - y) * sy) / sz, rim
+            yield 5, bx, by, z - ((bx - x) * sx + (by - y) * sy) / sz, rim, axis
     if mouth > 0 and abs(rim - mouth) < from_hole < rim + mouth:
         reach = from_hole + rim - mouth
-        for number, px, py, pz in _crossings(tip, axis, rim, mouth):
-            yield 1 + number, px, py, pz, reach
+        for number, px, py, pz, push in _crossings(tip, axis, rim, mouth):
+            yield 1 + number, px, py, pz, reach, push
     if abs(rim - outer) < from_hole < rim + outer:
         reach = outer + rim - from_hole
-        for number, px, py, pz in _crossings(tip, axis, rim, outer):
-            yield 3 + number, px, py, pz, reach
+        for number, px, py, pz, push in _crossings(tip, axis, rim, outer):
+            yield 3 + number, px, py, pz, reach, push
 
 
 def cone_point(
@@ -107,8 +108,12 @@ def ring_point(
 
 def _crossings(
     tip: Vector3, axis: Vector3, rim: float, edge: float
-) -> Iterator[tuple[int, float, float, float]]:
-    """Places where the rim of the peg crosses a circle about the hole's axis, seen from above."""
+) -> Iterator[tuple[int, float, float, float, Vector3]]:
+    """Places where the rim of the peg crosses a circle about the hole's axis, seen from above.
+
+    Two edges push each other at a right angle to both. Where they cross flatly and the peg is
+    tilted, that is far from upright: such a peg is pushed to the middle of the hole.
+    """
     (x, y, z), (sx, sy, sz) = tip, axis
     from_hole = math.hypot(x, y)
     towards = math.atan2(-y, -x)
@@ -132,4 +137,12 @@ def _crossings(
             turn -= max(-0.1, min(0.1, (px * px + py * py - edge * edge) / slope))
         cosine, sine = math.cos(turn), math.sin(turn)
         px, py = x + rim * (ax * cosine + bx * sine), y + rim * by * sine
-        yield number, px, py, z + rim * (az * cosine + bz * sine)
+        qx, qy, qz = bx * cosine - ax * sine, by * cosine, bz * cosine - az * sine
+        push = _upwards(-qz * px, -qz * py, qx * px + qy * py)
+        yield number, px, py, z + rim * (az * cosine + bz * sine), push
+
+
+def _upwards(x: float, y: float, z: float) -> Vector3:
+    """The unit vector along a line that points out of the face."""
+    length = math.copysign(math.sqrt(x * x + y * y + z * z), z)
+    return (x / length, y / length, z / length) if abs(length) > 1e-15 else _UP

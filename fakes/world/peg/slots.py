@@ -14,6 +14,7 @@ from fakes.world.peg.contact import Contact
 from fakes.world.peg.edges import TO_CHAMFER, edges_of
 from fakes.world.peg.face import carrying_points, cone_point, ring_point
 from fakes.world.peg.fit import Fit
+from fakes.world.peg.tilted import looks_round, rim_points
 
 _HALF: Final = math.sqrt(0.5)
 _RIM: Final = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
@@ -25,6 +26,8 @@ _FACE, _RIM_ON_FACE, _RINGS = 0, 6, 14
 _RIM_ON_WALL, _FLOOR, _OUTER, _PANEL, _KEYS, _KEY_PLAY, _BURR, _WEDGED = (
     17, 19, 23, 24, 28, 29, 30, 31,
 )  # fmt: skip
+_RIM_ON_OTHER_WALL = 31
+"""What the other side of a tilted peg adds to the number of its rim."""
 
 
 def among_contacts(fit: Fit, pose: Pose6) -> bool:
@@ -72,14 +75,13 @@ class Slots:
         x, y, z = tip
         sx, sy, _ = s
         lean = math.hypot(sx, sy)
-        for place, px, py, pz, reach in carrying_points(self.fit, tip, s):
+        for place, px, py, pz, reach, push in carrying_points(self.fit, tip, s):
             # Deeper than it reaches over the face: that is the wall's.
             if 0.0 < -pz <= reach:
                 # A flat peg has no lowest point: its place would jump round the rim.
                 stiffness = self._k if place else self._k * lean / (lean + _FLAT)
-                found.append(
-                    Contact(_FACE + place, -pz, stiffness, 0.0, 0.0, 1.0, px - x, py - y, pz - z)
-                )
+                depth, lever = -pz * push[2], (px - x, py - y, pz - z)
+                found.append(Contact(_FACE + place, depth, stiffness, *push, *lever))
         for place, (ex, ey) in enumerate(_RIM):
             lx, ly = self._rim * ex, self._rim * ey
             lz = -(lx * sx + ly * sy)
@@ -178,16 +180,21 @@ class Slots:
         x, y, z = tip
         sx, sy, sz = s
         up = self._peg_chamfer
-        cx, cy, cz = x + up * sx, y + up * sy, z + up * sz
-        px, py, pz, rho = ring_point((cx, cy, cz), s, self._radius, (cx, cy))
-        depth = rho - self._bore
-        if depth > 0.0 and pz + self._hole_chamfer < -depth:
-            found.append(
-                Contact(
-                    _RIM_ON_WALL, depth, self._k, -px / rho, -py / rho, 0.0,
-                    px - x, py - y, pz - z, math.hypot(cx, cy), up,
-                )
-            )  # fmt: skip
+        cx, cy, _ = centre = (x + up * sx, y + up * sy, z + up * sz)
+        if looks_round(self.fit, s):
+            farthest = ring_point(centre, s, self._radius, (cx, cy))
+            points = [(*farthest, math.hypot(cx, cy))]
+        else:
+            points = [*rim_points(centre, s, self._radius)]
+        for place, (px, py, pz, rho, around) in enumerate(points):
+            depth = rho - self._bore
+            if depth > 0.0 and pz + self._hole_chamfer < -depth:
+                found.append(
+                    Contact(
+                        _RIM_ON_WALL + _RIM_ON_OTHER_WALL * place, depth, self._k,
+                        -px / rho, -py / rho, 0.0, px - x, py - y, pz - z, around, up,
+                    )
+                )  # fmt: skip
 
     def _on_keys(self, found: list[Contact], z: float, yaw: float) -> None:
         """Standing on the grooves' ends, or turned back by their flanks."""

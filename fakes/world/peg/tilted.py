@@ -1,0 +1,91 @@
+"""Where a peg that is tilted far meets the round wall of a tight hole: a place on each side.
+
+Seen along the axis of the hole, its section is longer and its end narrower than a circle. As long
+as both are so by little against the clearance, the place farthest out lies in the direction in
+which the peg stands off the middle. Beyond, two places are farthest out, one on each side, and the
+peg can stand against both at once.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Final
+
+from fakes.world.peg.attitude import Vector3
+from fakes.world.peg.fit import Fit
+
+_ROUND_SHARE: Final = 0.05
+"""Share of the clearance by which the section of a tilted peg may be longer and still count as
+round. What changes there at once is far less than arm and contact give under a newton."""
+_EDGE_ROUNDS: Final = 6
+_RIM_ROUNDS: Final = 6
+_RIM_STEP_RAD: Final = 0.3
+
+
+def looks_round(fit: Fit, axis: Vector3) -> bool:
+    """Whether the tilt of the peg does not show in its section, against the clearance."""
+    lean_squared = axis[0] * axis[0] + axis[1] * axis[1]
+    return 0.5 * fit.peg_radius_m * lean_squared <= _ROUND_SHARE * fit.clearance_m
+
+
+def edge_azimuths(
+    radius_m: float, offset: tuple[float, float], axis: Vector3
+) -> Iterator[tuple[float, float, float, float]]:
+    """Unit vector x, y to the point of an edge that reaches deepest into the wall of the peg, on
+    each side of its tilt; the radius at which it turns, and how far along the axis it lies from the
+    place of the peg's axis at the height of the edge.
+
+    ``offset``: that place, from the middle of the edge. An edge point R e is nearest to the axis
+    where e points along d + ((R e - d)·s) s, with the offset d and the axis s.
+    """
+    (dx, dy), (sx, sy, _) = offset, axis
+    lean = math.hypot(sx, sy)
+    for side in (1.0, -1.0):
+        ex, ey = side * sx / lean, side * sy / lean
+        along = length = 0.0
+        for _ in range(_EDGE_ROUNDS):
+            along = (radius_m * ex - dx) * sx + (radius_m * ey - dy) * sy
+            vx, vy = dx + along * sx, dy + along * sy
+            length = math.hypot(vx, vy)
+            if length < 1e-12:
+                break
+            ex, ey = vx / length, vy / length
+        yield ex, ey, length, along
+
+
+def rim_points(
+    centre: Vector3, axis: Vector3, radius_m: float
+) -> Iterator[tuple[float, float, float, float, float]]:
+    """x, y, z of the points of a ring about the peg's axis that are farthest from the axis of the
+    hole, on each side of the tilt; that distance, and the radius at which its direction turns."""
+    (cx, cy, cz), (sx, sy, sz) = centre, axis
+    lean = math.hypot(sx, sy)
+    ax, ay = sx / lean, sy / lean
+    along, across = cx * ax + cy * ay, cy * ax - cx * ay
+    long_m, short_m = radius_m, radius_m * sz
+    for side in (1.0, -1.0):
+        angle = side * math.pi / 2
+        for _ in range(_RIM_ROUNDS):
+            p, q, first, second = _farther(along, across, short_m, long_m, angle)
+            step = -first / second if second < 0.0 else math.copysign(_RIM_STEP_RAD, first)
+            angle += max(-_RIM_STEP_RAD, min(_RIM_STEP_RAD, step))
+        p, q, _, second = _farther(along, across, short_m, long_m, angle)
+        rho = math.hypot(p, q)
+        sine, cosine = math.sin(angle), math.cos(angle)
+        tangent_squared = (short_m * sine) ** 2 + (long_m * cosine) ** 2
+        bend = second - tangent_squared
+        around = rho * second / bend if bend < 0.0 else 0.0
+        z = cz - radius_m * lean * cosine
+        yield p * ax - q * ay, p * ay + q * ax, z, rho, max(around, 0.0)
+
+
+def _farther(
+    along: float, across: float, short_m: float, long_m: float, angle: float
+) -> tuple[float, float, float, float]:
+    """A point of an ellipse, and both derivatives of half its squared distance by the angle."""
+    sine, cosine = math.sin(angle), math.cos(angle)
+    p, q = along + short_m * cosine, across + long_m * sine
+    first = q * long_m * cosine - p * short_m * sine
+    second = (
+        (long_m * cosine) ** 2 - q * long_m * sine + (short_m * sine) ** 2 - p * short_m * cosine
+    )
+    return p, q, first, second
