@@ -101,6 +101,8 @@ class TouchProbe:
         self.hole_map = hole_map
         self.deadline_s = deadline_s
         self.trace = SearchTrace() if trace is None else trace
+        self._lean_m = 0.0
+        """By how much the low side of the peg is below its tip, as it leans."""
         self.walled = against_a_wall(self.press_n, task.cell)
         """Ends a slide or a press at a flank, before the force on it adds up."""
 
@@ -115,9 +117,13 @@ class TouchProbe:
         Without a contact it ends where a tilted peg would have touched within the hole: an upright
         one then stands over the hole, which the next press tells. Raises ``SearchGaveUp``.
         """
-        await self.motions.back_out(_LIFT_M - at_m)
+        # The low side of a peg that leans may stand in the hole while its tip is above the face.
+        lean_m = self.task.fit.peg_radius_m * float(np.sin(np.linalg.norm(rotation)))
+        clear_m = max(self._lean_m, lean_m, -at_m) + _LIFT_M
+        await self.motions.back_out(clear_m)
         over = np.array([*xy_m, at_m - _LIFT_M])
         await self.motions.move_free(over, rotation, _FREE_M_S)
+        self._lean_m = lean_m
         # A tilted peg tells the hole by how deep it dips; a fifth beyond the deepest dip there is
         # nothing left to wait for.
         deeper_m = 1.2 * self.parameters.tilted_dip.value if np.any(rotation) else _LIFT_M
@@ -146,7 +152,7 @@ class TouchProbe:
             if met is Met.NOTHING or not self._on_edge(last, met):
                 break
             reached_m = depth_m(last)
-            await self._let_go()
+            await self.let_go()
             last, met = await self._sinks()
             # On a chamfer it slides in further each time; on a scratch it does not.
             if met is not Met.NOTHING and depth_m(last) - reached_m < STANDS_M:
@@ -181,18 +187,19 @@ class TouchProbe:
         pressed = await self.motions.press(self.press_n, hold_s, condition)
         return pressed.last, met
 
-    async def _let_go(self) -> None:
+    async def let_go(self) -> ContactSample:
         """On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
 
         That nothing carries it then is what is hoped for.
         """
         lost = LostSupport(self.press_n)
-        await self.motions.comply(
+        motion = await self.motions.comply(
             self.press_n,
             self.parameters.give_way_time.value,
             either(lost, self._late),
             turns=False,
         )
+        return motion.last
 
     async def look_round(self, centre_m: Array, radius_m: float = _LOCAL_RADIUS_M) -> bool:
         """Touch down upright and search a small spiral; True when the peg has entered."""

@@ -22,6 +22,11 @@ Array = NDArray[np.float64]
 
 _TOWARDS = np.array([1.0, 0.0])
 _ACROSS = np.array([0.0, 1.0])
+_FALLEN_DIPS = 1.15
+"""A tilted peg that rests on the edge of a hole dips by once its greatest dip at most."""
+_FALLEN_SIGMAS = 4.0
+_LET_GO = 6
+"""Times that a peg may come to lean on a flank on its way along the valley."""
 _BACK_M = (0.0, 0.4e-3, 0.12e-3)
 """Steps back from the wall before each crossing: where the valley is narrow it is found best."""
 
@@ -77,7 +82,7 @@ class _Valley:
         self._fallen = False
 
     async def follow(self, at_m: Array, dip_m: float) -> Array | None:
-        """Bottom centre (2,) at the wall; None when this was no valley."""
+        """Bottom centre (2,) at the wall, or where the peg fell in; None when this was no valley."""
         half_m = dip_m / 2
         for back_m in _BACK_M:
             if back_m:
@@ -88,8 +93,8 @@ class _Valley:
             if middle_m is None:
                 return None
             wall_m = await self._wall(await self._step_to(middle_m))
-            if wall_m is None:
-                return None
+            if wall_m is None or self._fallen:
+                return wall_m
             at_m = wall_m
             half_m = 0.3 * self._full_m
         return at_m
@@ -101,6 +106,9 @@ class _Valley:
             end_m = at_m + sign * self._reach_m * _ACROSS
             beyond = _SideReached(self, at_m, sign, half_m)
             motion = await self._slide(end_m, 2 * self._speed, beyond)
+            if motion.ended is Ended.FORCE:
+                # A stiff arm cannot climb a flank that is so steep: the peg finds the middle.
+                return await self._let_go()
             self._fallen = beyond.fallen
             if self._fallen or motion.ended is Ended.TRAVEL:
                 return None
@@ -112,14 +120,33 @@ class _Valley:
 
     async def _wall(self, at_m: Array) -> Array | None:
         """Forward until the dip has fallen to half of its greatest."""
-        stop = _WallReached(self)
-        motion = await self._slide(at_m + self._reach_m * _TOWARDS, 1.25 * self._speed, stop)
+        begin_m = at_m
+        for _ in range(_LET_GO):
+            stop = _WallReached(self)
+            end_m = begin_m + self._reach_m * _TOWARDS
+            motion = await self._slide(end_m, 1.25 * self._speed, stop)
+            self._fallen = stop.fallen
+            if motion.ended is not Ended.FORCE or _ahead(motion.last):
+                break
+            # It leans on a flank, beside the middle of the valley: the way goes on there.
+            begin_m = await self._let_go()
         self._probe.trace.note(motion.last, Felt.WALL)
         if motion.ended is Ended.TRAVEL:
             return None
+        if self._fallen:
+            return self._here_m
+        if motion.ended is Ended.FORCE:
+            return await self._let_go()
         # The arm had gone on while the average followed and the stop took effect.
         late_s = DETECTION_S + self._probe.task.cell.dead_time_s / 2
         return np.asarray(self._here_m - 1.25 * self._speed * late_s * _TOWARDS)
+
+    async def _let_go(self) -> Array:
+        """Where the peg comes to rest (2,) when nothing holds it sideways."""
+        rests = await self._probe.let_go()
+        self._here_m = rests.task_position_tip_m[:2].copy()
+        self._fallen = self.fell_in(self.dip_m(rests))
+        return self._here_m
 
     async def _step_to(self, point_m: Array) -> Array:
         """Downhill, hence faster: the arm does not press while the face falls away."""
@@ -137,7 +164,13 @@ class _Valley:
 
     def fell_in(self, dip_m: float) -> bool:
         """Deeper than any resting tilted peg."""
-        return dip_m > 1.5 * self._full_m
+        noise_m = _FALLEN_SIGMAS * self._probe.task.cell.height_sigma_m
+        return dip_m > max(_FALLEN_DIPS * self._full_m, self._full_m + noise_m)
+
+
+def _ahead(sample: ContactSample) -> bool:
+    """Whether what pushes the peg stands in its way, not beside it."""
+    return abs(float(sample.force_n[0])) > abs(float(sample.force_n[1]))
 
 
 class _Average:
@@ -181,8 +214,10 @@ class _WallReached:
         self._valley = valley
         self._average = _Average(valley)
         self._greatest_m = 0.0
+        self.fallen = False
 
     def __call__(self, sample: ContactSample) -> bool:
         dip_m = self._average(sample)
         self._greatest_m = max(self._greatest_m, dip_m)
-        return self._valley.fell_in(dip_m) or dip_m < self._greatest_m / 2
+        self.fallen = self._valley.fell_in(dip_m)
+        return self.fallen or dip_m < self._greatest_m / 2
