@@ -82,7 +82,7 @@ class _Valley:
         self._fallen = False
 
     async def follow(self, at_m: Array, dip_m: float) -> Array | None:
-        """Bottom centre (2,) at the wall, or where the peg fell in; None when this was no valley."""
+        """Bottom centre (2,) at the wall, or where the peg fell in; None where no valley is."""
         half_m = dip_m / 2
         for back_m in _BACK_M:
             if back_m:
