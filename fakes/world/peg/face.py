@@ -9,14 +9,10 @@ import math
 from collections.abc import Iterator
 
 from fakes.world.peg.attitude import Vector3, axis_of
+from fakes.world.peg.crossings import crossings
 from fakes.world.peg.edges import edges_of
 from fakes.world.peg.fit import Fit
 
-_ROUNDS = 3
-"""Rounds that turn the crossing of two circles into that of an ellipse and a circle: error
-below 1e-9 m."""
-_NEARLY_UPRIGHT = 0.9999
-"""Cosine of a tilt up to which one round does."""
 _NEAR_AXIS = 0.01
 """Share of a ring's radius up to which the first order does."""
 _CONE_ROUNDS = 4
@@ -63,14 +59,13 @@ def carrying_points(fit: Fit, tip: Vector3, axis: Vector3) -> Iterator[FacePoint
         bx, by = outer * ex, outer * ey
         if outer < math.inf and math.hypot(bx - x, by - y) < rim:
             yield 5, bx, by, z - ((bx - x) * sx + (by - y) * sy) / sz, rim, axis
-    if mouth > 0 and abs(rim - mouth) < from_hole < rim + mouth:
-        reach = from_hole + rim - mouth
-        for number, px, py, pz, push in _crossings(tip, axis, rim, mouth):
-            yield 1 + number, px, py, pz, reach, push
-    if abs(rim - outer) < from_hole < rim + outer:
+    if mouth > 0:
+        for one in crossings(tip, axis, rim, mouth):
+            yield 1 + one.number, one.x_m, one.y_m, one.z_m, one.reach_m, one.push
+    if outer < math.inf:
         reach = outer + rim - from_hole
-        for number, px, py, pz, push in _crossings(tip, axis, rim, outer):
-            yield 3 + number, px, py, pz, reach, push
+        for one in crossings(tip, axis, rim, outer):
+            yield 3 + one.number, one.x_m, one.y_m, one.z_m, reach, one.push
 
 
 def cone_point(
@@ -104,45 +99,3 @@ def ring_point(
     px = cx + scale * (ex - along * sx)
     py = cy + scale * (ey - along * sy)
     return px, py, cz - scale * along * sz, math.hypot(px, py)
-
-
-def _crossings(
-    tip: Vector3, axis: Vector3, rim: float, edge: float
-) -> Iterator[tuple[int, float, float, float, Vector3]]:
-    """Places where the rim of the peg crosses a circle about the hole's axis, seen from above.
-
-    Two edges push each other at a right angle to both. Where they cross flatly and the peg is
-    tilted, that is far from upright: such a peg is pushed to the middle of the hole.
-    """
-    (x, y, z), (sx, sy, sz) = tip, axis
-    from_hole = math.hypot(x, y)
-    towards = math.atan2(-y, -x)
-    cosine = (from_hole**2 + rim**2 - edge**2) / (2 * from_hole * rim)
-    half = math.acos(max(-1.0, min(1.0, cosine)))
-    length = math.hypot(sx, sz)
-    ax, az = sz / length, -sx / length  # two directions across the peg's axis; a has no y
-    bx, by, bz = sy * az, sz * ax - sx * az, -sy * ax
-    rounds = _ROUNDS if sz < _NEARLY_UPRIGHT else 1
-    for number, sign in enumerate((1.0, -1.0)):
-        angle = towards + sign * half
-        ux, uy = math.cos(angle), math.sin(angle)
-        turn = math.atan2(ux * bx + uy * by, ux * ax)
-        for _ in range(rounds):
-            cosine, sine = math.cos(turn), math.sin(turn)
-            px, py = x + rim * (ax * cosine + bx * sine), y + rim * by * sine
-            qx, qy = rim * (bx * cosine - ax * sine), rim * by * cosine
-            slope = 2 * (px * qx + py * qy)
-            if abs(slope) < 1e-15:
-                break
-            turn -= max(-0.1, min(0.1, (px * px + py * py - edge * edge) / slope))
-        cosine, sine = math.cos(turn), math.sin(turn)
-        px, py = x + rim * (ax * cosine + bx * sine), y + rim * by * sine
-        qx, qy, qz = bx * cosine - ax * sine, by * cosine, bz * cosine - az * sine
-        push = _upwards(-qz * px, -qz * py, qx * px + qy * py)
-        yield number, px, py, z + rim * (az * cosine + bz * sine), push
-
-
-def _upwards(x: float, y: float, z: float) -> Vector3:
-    """The unit vector along a line that points out of the face."""
-    length = math.copysign(math.sqrt(x * x + y * y + z * z), z)
-    return (x / length, y / length, z / length) if abs(length) > 1e-15 else _UP

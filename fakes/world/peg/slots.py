@@ -19,7 +19,7 @@ from fakes.world.peg.tilted import looks_round, rim_points
 _HALF: Final = math.sqrt(0.5)
 _RIM: Final = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _FLAT: Final = 1e-3
-"""Tilt (rad) from which the lowest point of the rim carries about half of what it carries later."""
+"""Tilt (rad) at which the lowest point of the rim takes over from points all round it."""
 # First number of each kind of slot, with as many after it as the kind has places; ``edges`` has
 # some between. They must differ, because friction finds the bristle of a contact by its number.
 _FACE, _RIM_ON_FACE, _RINGS = 0, 6, 14
@@ -75,11 +75,12 @@ class Slots:
         x, y, z = tip
         sx, sy, _ = s
         lean = math.hypot(sx, sy)
+        # A flat peg has no lowest point: its place would jump round the rim.
+        tilted = lean / (lean + _FLAT)
         for place, px, py, pz, reach, push in carrying_points(self.fit, tip, s):
             # Deeper than it reaches over the face: that is the wall's.
             if 0.0 < -pz <= reach:
-                # A flat peg has no lowest point: its place would jump round the rim.
-                stiffness = self._k if place else self._k * lean / (lean + _FLAT)
+                stiffness = self._k if place else self._k * tilted
                 depth, lever = -pz * push[2], (px - x, py - y, pz - z)
                 found.append(Contact(_FACE + place, depth, stiffness, *push, *lever))
         for place, (ex, ey) in enumerate(_RIM):
@@ -90,8 +91,8 @@ class Slots:
                 continue
             rho = math.hypot(x + lx, y + ly)
             if depth <= min(rho - self._mouth, self._outer - rho):
-                slot = _RIM_ON_FACE + place
-                found.append(Contact(slot, depth, 0.5 * self._k, 0.0, 0.0, 1.0, lx, ly, lz))
+                slot, stiffness = _RIM_ON_FACE + place, 0.5 * self._k * (1.0 - tilted)
+                found.append(Contact(slot, depth, stiffness, 0.0, 0.0, 1.0, lx, ly, lz))
 
     def _beside(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
         """Wall of the peg against the outer wall of the plug, and the panel below."""

@@ -11,14 +11,13 @@ from collections.abc import Iterator
 from typing import Final
 
 from fakes.world.peg.attitude import Vector3
+from fakes.world.peg.ellipse import Ellipse
 from fakes.world.peg.fit import Fit
 
 _ROUND_SHARE: Final = 0.05
 """Share of the clearance by which the section of a tilted peg may be longer and still count as
 round. What changes there at once is far less than arm and contact give under a newton."""
 _EDGE_ROUNDS: Final = 6
-_RIM_ROUNDS: Final = 6
-_RIM_STEP_RAD: Final = 0.3
 
 
 def looks_round(fit: Fit, axis: Vector3) -> bool:
@@ -57,35 +56,13 @@ def rim_points(
 ) -> Iterator[tuple[float, float, float, float, float]]:
     """x, y, z of the points of a ring about the peg's axis that are farthest from the axis of the
     hole, on each side of the tilt; that distance, and the radius at which its direction turns."""
-    (cx, cy, cz), (sx, sy, sz) = centre, axis
-    lean = math.hypot(sx, sy)
-    ax, ay = sx / lean, sy / lean
-    along, across = cx * ax + cy * ay, cy * ax - cx * ay
-    long_m, short_m = radius_m, radius_m * sz
+    ring = Ellipse.of_ring(centre, axis, radius_m)
     for side in (1.0, -1.0):
-        angle = side * math.pi / 2
-        for _ in range(_RIM_ROUNDS):
-            p, q, first, second = _farther(along, across, short_m, long_m, angle)
-            step = -first / second if second < 0.0 else math.copysign(_RIM_STEP_RAD, first)
-            angle += max(-_RIM_STEP_RAD, min(_RIM_STEP_RAD, step))
-        p, q, _, second = _farther(along, across, short_m, long_m, angle)
-        rho = math.hypot(p, q)
-        sine, cosine = math.sin(angle), math.cos(angle)
-        tangent_squared = (short_m * sine) ** 2 + (long_m * cosine) ** 2
-        bend = second - tangent_squared
+        angle = ring.farthest(side * math.pi / 2)
+        x, y, z = ring.point(angle)
+        tx, ty, _ = ring.tangent(angle)
+        rho = math.hypot(x, y)
+        _, second = ring.farther(angle)
+        bend = second - (tx * tx + ty * ty)
         around = rho * second / bend if bend < 0.0 else 0.0
-        z = cz - radius_m * lean * cosine
-        yield p * ax - q * ay, p * ay + q * ax, z, rho, max(around, 0.0)
-
-
-def _farther(
-    along: float, across: float, short_m: float, long_m: float, angle: float
-) -> tuple[float, float, float, float]:
-    """A point of an ellipse, and both derivatives of half its squared distance by the angle."""
-    sine, cosine = math.sin(angle), math.cos(angle)
-    p, q = along + short_m * cosine, across + long_m * sine
-    first = q * long_m * cosine - p * short_m * sine
-    second = (
-        (long_m * cosine) ** 2 - q * long_m * sine + (short_m * sine) ** 2 - p * short_m * cosine
-    )
-    return p, q, first, second
+        yield x, y, z, rho, max(around, 0.0)
