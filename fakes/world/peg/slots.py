@@ -83,16 +83,12 @@ class Slots:
                 stiffness = self._k if place else self._k * tilted
                 depth, lever = -pz * push[2], (px - x, py - y, pz - z)
                 found.append(Contact(_FACE + place, depth, stiffness, *push, *lever))
-        for place, (ex, ey) in enumerate(_RIM):
-            lx, ly = self._rim * ex, self._rim * ey
-            lz = -(lx * sx + ly * sy)
-            depth = -z - lz
-            if depth <= 0.0:
-                continue
-            rho = math.hypot(x + lx, y + ly)
-            if depth <= min(rho - self._mouth, self._outer - rho):
+        for place, direction in enumerate(_RIM):
+            px, py, pz, rho = ring_point(tip, s, self._rim, direction)
+            if 0.0 < -pz <= min(rho - self._mouth, self._outer - rho):
                 slot, stiffness = _RIM_ON_FACE + place, 0.5 * self._k * (1.0 - tilted)
-                found.append(Contact(slot, depth, stiffness, 0.0, 0.0, 1.0, lx, ly, lz))
+                lever = (px - x, py - y, pz - z)
+                found.append(Contact(slot, -pz, stiffness, 0.0, 0.0, 1.0, *lever))
 
     def _beside(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
         """Wall of the peg against the outer wall of the plug, and the panel below."""
