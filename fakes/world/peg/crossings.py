@@ -20,7 +20,7 @@ _NEARLY_UPRIGHT: Final = 0.9999
 """Cosine of a tilt up to which one round does."""
 _TIGHT: Final = 10.0
 """Two circles are a start where the rim stands out by so many times what the tilt takes off it."""
-_STEPS: Final = 12
+_STEPS: Final = 8
 _UPWARDS: Final = tuple(
     (angle, math.cos(angle), math.sin(angle))
     for angle in (math.pi * step / _STEPS for step in range(_STEPS + 1))
@@ -42,7 +42,7 @@ class Crossing:
     z_m: float
     """Height of the rim over the face."""
     reach_m: float
-    """Deeper than this the wall below the edge pushes, and not the edge."""
+    """Deeper than this the wall below the edge pushes, and not the edge. Zero above the edge."""
     push: Vector3
     """Direction in which the edge pushes: at a right angle to both edges.
 
@@ -74,7 +74,7 @@ def crossings(tip: Vector3, axis: Vector3, rim_m: float, edge_m: float) -> Itera
         lowest = _lowest(rim, side, edge_m)
         if lowest is not None:
             angle, goes_out = lowest
-            reach_m = _reach(rim, angle, rim.farthest(side * math.pi / 2), edge_m)
+            reach_m = _reach(rim, angle, side, edge_m)
             yield _crossing(rim, 0 if goes_out == (side > 0) else 1, angle, reach_m)
 
 
@@ -93,8 +93,7 @@ def _from_circles(rim: Ellipse, direction: float, edge_m: float, rounds: int) ->
     """Angle of the crossing next to a direction from the middle of the rim."""
     angle = math.atan2(math.sin(direction) * rim.short_m, math.cos(direction) * rim.long_m)
     for _ in range(rounds):
-        over = rim.squared_distance(math.cos(angle), math.sin(angle)) - edge_m * edge_m
-        slope = 2.0 * rim.farther(angle)[0]
+        over, slope = rim.over(angle, edge_m * edge_m)
         if abs(slope) < 1e-15:
             break
         angle -= max(-0.1, min(0.1, over / slope))
@@ -131,21 +130,23 @@ def _between(rim: Ellipse, low: float, high: float, edge_squared: float, *, risi
     """Newton's method that halves the angle where it would leave it."""
     angle = 0.5 * (low + high)
     for _ in range(_HALVINGS):
-        over = rim.squared_distance(math.cos(angle), math.sin(angle)) - edge_squared
+        over, slope = rim.over(angle, edge_squared)
         if abs(over) < _FOUND_M2:
             break
         if (over > 0.0) == rising:
             high = angle
         else:
             low = angle
-        slope = 2.0 * rim.farther(angle)[0]
         angle = angle - over / slope if slope else low
         if not min(low, high) < angle < max(low, high):
             angle = 0.5 * (low + high)
     return angle
 
 
-def _reach(rim: Ellipse, angle: float, farthest: float, edge_m: float) -> float:
+def _reach(rim: Ellipse, angle: float, side: float, edge_m: float) -> float:
     """The wall takes over once the farthest point of the rim is as deep as it stands out."""
+    if rim.height_m >= rim.drop_m * math.cos(angle):
+        return 0.0
+    farthest = rim.farthest(side * math.pi / 2)
     out_m = math.sqrt(rim.squared_distance(math.cos(farthest), math.sin(farthest))) - edge_m
     return out_m + rim.drop_m * (math.cos(angle) - math.cos(farthest))

@@ -109,18 +109,25 @@ class Edge:
             distance = math.hypot(dx, dy)
             if distance > 1e-15:
                 towards = (dx / distance, dy / distance)
-                yield self._on_wall(_ON_WALL, tip, axis, towards, distance, (distance, up))
+                yield self._on_wall(
+                    _ON_WALL, tip, axis,
+                    towards=towards, distance=distance, turning=(distance, up),
+                )  # fmt: skip
             return
         sides = edge_azimuths(self.radius_m, offset, axis)
         for slot, (ex, ey, around, along) in zip((_ON_WALL, _ON_OTHER_WALL), sides, strict=True):
             turning = (around, up + along)
-            yield self._on_wall(slot, tip, axis, (ex, ey), dx * ex + dy * ey, turning)
+            distance = dx * ex + dy * ey
+            yield self._on_wall(
+                slot, tip, axis, towards=(ex, ey), distance=distance, turning=turning
+            )
 
     def _on_wall(
         self,
         slot: int,
         tip: Vector3,
         axis: Vector3,
+        *,
         towards: tuple[float, float],
         distance: float,
         turning: tuple[float, float],

@@ -8,6 +8,8 @@ from fakes.world.peg.attitude import Vector3
 
 _ROUNDS: Final = 6
 _STEP_RAD: Final = 0.3
+_FOUND_RAD: Final = 1e-6
+"""After a step of Newton's method that is so short, the next would be far shorter."""
 
 
 @dataclass(slots=True)
@@ -45,6 +47,13 @@ class Ellipse:
         p, q = self.along_m + self.short_m * cosine, self.across_m + self.long_m * sine
         return p * p + q * q
 
+    def over(self, angle: float, edge_squared: float) -> tuple[float, float]:
+        """By how much the squared distance is above that of an edge, and its derivative."""
+        cosine, sine = math.cos(angle), math.sin(angle)
+        p, q = self.along_m + self.short_m * cosine, self.across_m + self.long_m * sine
+        slope = 2.0 * (q * self.long_m * cosine - p * self.short_m * sine)
+        return p * p + q * q - edge_squared, slope
+
     def point(self, angle: float) -> Vector3:
         """x, y, z at an angle."""
         cosine, sine = math.cos(angle), math.sin(angle)
@@ -72,4 +81,6 @@ class Ellipse:
             first, second = self.farther(angle)
             step = -first / second if second < 0.0 else math.copysign(_STEP_RAD, first)
             angle += max(-_STEP_RAD, min(_STEP_RAD, step))
+            if abs(step) < _FOUND_RAD:
+                break
         return angle

@@ -20,6 +20,8 @@ _HALF: Final = math.sqrt(0.5)
 _RIM: Final = tuple((math.cos(k * math.pi / 4), math.sin(k * math.pi / 4)) for k in range(8))
 _FLAT: Final = 1e-3
 """Tilt (rad) at which the lowest point of the rim takes over from points all round it."""
+_LEANING: Final = 20 * _FLAT
+"""Tilt beyond which those carry no more."""
 # First number of each kind of slot, with as many after it as the kind has places; ``edges`` has
 # some between. They must differ, because friction finds the bristle of a contact by its number.
 _FACE, _RIM_ON_FACE, _RINGS = 0, 6, 14
@@ -83,12 +85,19 @@ class Slots:
                 stiffness = self._k if place else self._k * tilted
                 depth, lever = -pz * push[2], (px - x, py - y, pz - z)
                 found.append(Contact(_FACE + place, depth, stiffness, *push, *lever))
-        for place, direction in enumerate(_RIM):
-            px, py, pz, rho = ring_point(tip, s, self._rim, direction)
-            if 0.0 < -pz <= min(rho - self._mouth, self._outer - rho):
-                slot, stiffness = _RIM_ON_FACE + place, 0.5 * self._k * (1.0 - tilted)
-                lever = (px - x, py - y, pz - z)
-                found.append(Contact(slot, -pz, stiffness, 0.0, 0.0, 1.0, *lever))
+        if lean > _LEANING:
+            return
+        stiffness = 0.5 * self._k * (1.0 - tilted)
+        for place, (ex, ey) in enumerate(_RIM):
+            lx, ly = self._rim * ex, self._rim * ey
+            lz = -(lx * sx + ly * sy)
+            depth = -z - lz
+            if depth <= 0.0:
+                continue
+            rho = math.hypot(x + lx, y + ly)
+            if depth <= min(rho - self._mouth, self._outer - rho):
+                slot = _RIM_ON_FACE + place
+                found.append(Contact(slot, depth, stiffness, 0.0, 0.0, 1.0, lx, ly, lz))
 
     def _beside(self, found: list[Contact], tip: Vector3, s: Vector3) -> None:
         """Wall of the peg against the outer wall of the plug, and the panel below."""
