@@ -14,8 +14,9 @@ from typing import Final
 from fakes.world.peg.attitude import Vector3
 from fakes.world.peg.ellipse import Ellipse
 
-_ROUNDS: Final = 3
-"""Rounds from the crossing of two circles to that of ellipse and circle: error below 1e-9 m."""
+_ROUNDS: Final = 12
+"""Rounds from the crossing of two circles to that of ellipse and circle; three or four do, but
+where the rim only just reaches the edge from outside."""
 _NEARLY_UPRIGHT: Final = 0.9999
 """Cosine of a tilt up to which one round does."""
 _TIGHT: Final = 10.0
@@ -27,7 +28,7 @@ _UPWARDS: Final = tuple(
 )
 """Angles from the lowest point of the rim to the highest."""
 _HALVINGS: Final = 40
-_FOUND_M2: Final = 1e-15
+_FOUND_M2: Final = 1e-14
 _UP: Vector3 = (0.0, 0.0, 1.0)
 
 
@@ -68,7 +69,8 @@ def crossings(tip: Vector3, axis: Vector3, rim_m: float, edge_m: float) -> Itera
         rounds = _ROUNDS if axis[2] < _NEARLY_UPRIGHT else 1
         for number, sign in enumerate((1.0, -1.0)):
             angle = _from_circles(rim, towards + sign * half, edge_m, rounds)
-            yield _crossing(rim, number, angle, reach_m)
+            if angle is not None:
+                yield _crossing(rim, number, angle, reach_m)
         return
     for side in (1.0, -1.0):
         lowest = _lowest(rim, side, edge_m)
@@ -89,15 +91,17 @@ def _crossing(rim: Ellipse, number: int, angle: float, reach_m: float) -> Crossi
     return Crossing(number, px, py, pz, reach_m, push)
 
 
-def _from_circles(rim: Ellipse, direction: float, edge_m: float, rounds: int) -> float:
+def _from_circles(rim: Ellipse, direction: float, edge_m: float, rounds: int) -> float | None:
     """Angle of the crossing next to a direction from the middle of the rim."""
     angle = math.atan2(math.sin(direction) * rim.short_m, math.cos(direction) * rim.long_m)
     for _ in range(rounds):
         over, slope = rim.over(angle, edge_m * edge_m)
+        if abs(over) < _FOUND_M2:
+            return angle
         if abs(slope) < 1e-15:
-            break
+            return None
         angle -= max(-0.1, min(0.1, over / slope))
-    return angle
+    return angle if rounds < _ROUNDS else None
 
 
 def _lowest(rim: Ellipse, side: float, edge_m: float) -> tuple[float, bool] | None:

@@ -6,7 +6,7 @@ from typing import Final, Self
 
 from fakes.world.peg.attitude import Vector3
 
-_ROUNDS: Final = 6
+_ROUNDS: Final = 20
 _STEP_RAD: Final = 0.3
 _FOUND_RAD: Final = 1e-6
 """After a step of Newton's method that is so short, the next would be far shorter."""

@@ -17,7 +17,9 @@ from fakes.world.peg.fit import Fit
 _ROUND_SHARE: Final = 0.05
 """Share of the clearance by which the section of a tilted peg may be longer and still count as
 round. What changes there at once is far less than arm and contact give under a newton."""
-_EDGE_ROUNDS: Final = 6
+_ROUNDS: Final = 20
+_STEP_RAD: Final = 0.3
+_FOUND_RAD: Final = 1e-7
 
 
 def looks_round(fit: Fit, axis: Vector3) -> bool:
@@ -34,21 +36,23 @@ def edge_azimuths(
     place of the peg's axis at the height of the edge.
 
     ``offset``: that place, from the middle of the edge. An edge point R e is nearest to the axis
-    where e points along d + ((R e - d)·s) s, with the offset d and the axis s.
+    where e points along v = d + ((R e - d)·s) s, with the offset d and the axis s. There v is as
+    long as e·v, and across e it changes by R (t·s)² with the azimuth, where t is across e.
     """
     (dx, dy), (sx, sy, _) = offset, axis
-    lean = math.hypot(sx, sy)
-    for side in (1.0, -1.0):
-        ex, ey = side * sx / lean, side * sy / lean
-        along = length = 0.0
-        for _ in range(_EDGE_ROUNDS):
+    for side in (0.0, math.pi):
+        azimuth = math.atan2(sy, sx) + side
+        for _ in range(_ROUNDS):
+            ex, ey = math.cos(azimuth), math.sin(azimuth)
             along = (radius_m * ex - dx) * sx + (radius_m * ey - dy) * sy
             vx, vy = dx + along * sx, dy + along * sy
-            length = math.hypot(vx, vy)
-            if length < 1e-12:
+            across, leans = ex * vy - ey * vx, ex * sy - ey * sx
+            turning = ex * vx + ey * vy - radius_m * leans * leans
+            step = across / turning if turning > 0.0 else math.copysign(_STEP_RAD, across)
+            if abs(step) < _FOUND_RAD:
                 break
-            ex, ey = vx / length, vy / length
-        yield ex, ey, length, along
+            azimuth += max(-_STEP_RAD, min(_STEP_RAD, step))
+        yield ex, ey, max(turning / (1.0 - leans * leans), 0.0), along
 
 
 def rim_points(

@@ -79,7 +79,8 @@ class Push:
             forces_n = springs_m * [self.lateral_n_m, self.lateral_n_m, self.axial_n_m]
             rows.append([-down - z, *forces_n, x, y, down])
         whole = len(rows) // together * together
-        return np.array(rows[:whole]).reshape(-1, together, len(rows[0])).mean(axis=1)
+        means = np.array(rows[:whole]).reshape(-1, together, len(rows[0])).mean(axis=1)
+        return np.asarray(means)
 
     def _model(self, to_m: float) -> tuple[Any, Any]:
         turning, inertia = self.turning_nm_rad * _MM**2, _INERTIA_KG_M2 * _MM**2
@@ -121,7 +122,8 @@ class Push:
               <inertial pos="0 0 0" mass="1e-3" diaginertia="1e-6 1e-6 1e-6"/>
               <joint type="slide" axis="0 0 1" armature="1e9"/>
               <body>
-                <inertial pos="0 0 0" mass="{_MASS_KG}" diaginertia="{inertia} {inertia} {inertia}"/>
+                <inertial pos="0 0 0" mass="{_MASS_KG}"
+                          diaginertia="{inertia} {inertia} {inertia}"/>
                 {joints}<geom {peg} mass="0" {_PEG}/>
               </body>
             </body>

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fakes.world.frames import Array
-from tests.unit.fakes.world.peg.judge import COMMANDED, DEPTH, F_X, F_Z, X, Y, Push
+from tests.unit.fakes.world.peg.judge import COMMANDED, DEPTH, F_X, F_Z, Push, X, Y
 from tests.unit.fakes.world.peg.pushing import MM, pin
 
 _PRESSES = (0.3, 0.55, 0.8)
