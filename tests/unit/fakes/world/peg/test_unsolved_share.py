@@ -49,9 +49,9 @@ def test_nearly_all_steps_find_equilibrium(stiffness: float) -> None:
         for bearing in (0.0, 0.8, 1.6, 3.1)
         for beside_mm in (0.0, 0.05)
     ]
-    for reach_mm in [0.06] * 10 + [0.3] * 10:
+    for reach_mm in [0.03] * 10 + [0.06] * 10:
         x_m, y_m = rng.uniform(-reach_mm * MM, reach_mm * MM, 2).tolist()
         pegs.append(_lowered(stiffness, x_m, y_m))
     steps = sum(peg.steps for peg in pegs)
-    assert steps > 1500
     assert sum(peg.failures for peg in pegs) <= 0.01 * steps
+    assert steps > 2000
