@@ -132,15 +132,18 @@ class TouchProbe:
         self.still_in_time(touched.last)
         return touched.last
 
-    async def slide(self, way_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
-        """Pressed along a way (n, 2); ends with the deadline too."""
+    async def slide(
+        self, way_m: Array, speed_m_s: float, until: Stop, *, side_share: float = 1.0
+    ) -> ContactMotion:
+        """Pressed along a way (n, 2); ends with the deadline too, and by a force to the side of so
+        much of the search's."""
         motion = await self.motions.slide(
             way_m,
             self.press_n,
             speed_m_s,
             # Asked in the motion itself: one slide may take longer than the time that is left.
             either(until, self._late),
-            self.task.limits.search_n,
+            side_share * self.task.limits.search_n,
         )
         self.still_in_time(motion.last)
         return motion
@@ -152,7 +155,7 @@ class TouchProbe:
             if met is Met.NOTHING or not self._on_edge(last, met):
                 break
             reached_m = depth_m(last)
-            await self.let_go()
+            await self._let_go()
             last, met = await self._sinks()
             # On a chamfer it slides in further each time; on a scratch it does not.
             if met is not Met.NOTHING and depth_m(last) - reached_m < STANDS_M:
@@ -187,19 +190,18 @@ class TouchProbe:
         pressed = await self.motions.press(self.press_n, hold_s, condition)
         return pressed.last, met
 
-    async def let_go(self) -> ContactSample:
+    async def _let_go(self) -> None:
         """On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
 
         That nothing carries it then is what is hoped for.
         """
-        lost = LostSupport(self.press_n)
-        motion = await self.motions.comply(
-            self.press_n,
-            self.parameters.give_way_time.value,
-            either(lost, self._late),
-            turns=False,
-        )
-        return motion.last
+        await self.let_go(LostSupport(self.press_n))
+
+    async def let_go(self, until: Stop) -> ContactSample:
+        """Press on, and let the peg go to where nothing pushes it sideways."""
+        hold_s = self.parameters.give_way_time.value
+        ends = either(until, self._late)
+        return (await self.motions.comply(self.press_n, hold_s, ends, turns=False)).last
 
     async def look_round(self, centre_m: Array, radius_m: float = _LOCAL_RADIUS_M) -> bool:
         """Touch down upright and search a small spiral; True when the peg has entered."""

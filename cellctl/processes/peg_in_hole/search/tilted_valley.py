@@ -22,9 +22,11 @@ Array = NDArray[np.float64]
 
 _TOWARDS = np.array([1.0, 0.0])
 _ACROSS = np.array([0.0, 1.0])
-_FALLEN_DIPS = 1.15
-"""A tilted peg that rests on the edge of a hole dips by once its greatest dip at most."""
-_FALLEN_SIGMAS = 4.0
+_FALLEN_DIPS = 1.4
+"""On the edge of a hole a tilted peg rests deeper by r θ c / e than far from it, at a distance e
+from its axis: with this dip it stands within 2.5 c."""
+_SIDE_SHARE = 0.7
+"""Flanks are steep, and press and side force add up."""
 _LET_GO = 6
 """Times that a peg may come to lean on a flank on its way along the valley."""
 _BACK_M = (0.0, 0.4e-3, 0.12e-3)
@@ -143,7 +145,7 @@ class _Valley:
 
     async def _let_go(self) -> Array:
         """Where the peg comes to rest (2,) when nothing holds it sideways."""
-        rests = await self._probe.let_go()
+        rests = await self._probe.let_go(lambda sample: self.fell_in(self.dip_m(sample)))
         self._here_m = rests.task_position_tip_m[:2].copy()
         self._fallen = self.fell_in(self.dip_m(rests))
         return self._here_m
@@ -154,7 +156,7 @@ class _Valley:
         return point_m
 
     async def _slide(self, point_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
-        motion = await self._probe.slide(point_m[None, :], speed_m_s, until)
+        motion = await self._probe.slide(point_m[None, :], speed_m_s, until, side_share=_SIDE_SHARE)
         self._here_m: Array = motion.last.task_position_tip_m[:2].copy()
         return motion
 
@@ -164,8 +166,7 @@ class _Valley:
 
     def fell_in(self, dip_m: float) -> bool:
         """Deeper than any resting tilted peg."""
-        noise_m = _FALLEN_SIGMAS * self._probe.task.cell.height_sigma_m
-        return dip_m > max(_FALLEN_DIPS * self._full_m, self._full_m + noise_m)
+        return dip_m > _FALLEN_DIPS * self._full_m
 
 
 def _ahead(sample: ContactSample) -> bool:
