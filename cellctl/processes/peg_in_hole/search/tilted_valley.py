@@ -25,6 +25,8 @@ _ACROSS = np.array([0.0, 1.0])
 _FALLEN_DIPS = 1.4
 """On the edge of a hole a tilted peg rests deeper by r θ c / e than far from it, at a distance e
 from its axis: with this dip it stands within 2.5 c."""
+_BACK_SPEEDS = 2.0
+"""Near the wall the peg may stand in the mouth, and is not to be torn out."""
 _SIDE_SHARE = 0.7
 """Flanks are steep, and press and side force add up."""
 _LET_GO = 6
@@ -82,20 +84,21 @@ class _Valley:
         self._speed = probe.parameters.touch_speed.value
         self._reach_m = 2 * probe.task.fit.bore_radius_m
         self._fallen = False
+        self._against = False
 
     async def follow(self, at_m: Array, dip_m: float) -> Array | None:
         """Bottom centre (2,) at the wall, or where the peg fell in; None where no valley is."""
         half_m = dip_m / 2
         for back_m in _BACK_M:
             if back_m:
-                at_m = await self._step_to(at_m - back_m * _TOWARDS)
+                at_m = await self._step_to(at_m - back_m * _TOWARDS, _BACK_SPEEDS)
             middle_m = await self._middle(at_m, half_m)
             if self._fallen:
                 return self._here_m
             if middle_m is None:
                 return None
             wall_m = await self._wall(await self._step_to(middle_m))
-            if wall_m is None or self._fallen:
+            if wall_m is None or self._fallen or self._against:
                 return wall_m
             at_m = wall_m
             half_m = 0.3 * self._full_m
@@ -137,7 +140,9 @@ class _Valley:
             return None
         if self._fallen:
             return self._here_m
-        if motion.ended is Ended.FORCE:
+        self._against = motion.ended is Ended.FORCE
+        if self._against:
+            # What stands in its way is the far wall of the hole, with the mouth below the peg.
             return await self._let_go()
         # The arm had gone on while the average followed and the stop took effect.
         late_s = DETECTION_S + self._probe.task.cell.dead_time_s / 2
@@ -150,9 +155,9 @@ class _Valley:
         self._fallen = self.fell_in(self.dip_m(rests))
         return self._here_m
 
-    async def _step_to(self, point_m: Array) -> Array:
+    async def _step_to(self, point_m: Array, speeds: float = 4.0) -> Array:
         """Downhill, hence faster: the arm does not press while the face falls away."""
-        await self._slide(point_m, 4 * self._speed, lambda _sample: False)
+        await self._slide(point_m, speeds * self._speed, lambda _sample: False)
         return point_m
 
     async def _slide(self, point_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
