@@ -5,6 +5,7 @@ contact with everything above it. What is simpler: one delay and one lag stand f
 line, no links, no store, no second process. Time is the world's own, so a busy PC changes nothing.
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +19,7 @@ from benchmarks.insertion.contact_guard import (
     SensorNoise,
 )
 from cellctl.cell.contact_motion.frames import ContactFrames
+from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.geometry.pose import Array
 from cellctl.guard.report import TareResult
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamReport
@@ -33,7 +35,10 @@ PERIOD_S, DELAY_TICKS, LAG_S = 8e-3, 1, 5e-3
 """Timing of the stream."""
 DEAD_TIME_S = 27e-3
 """That of the stream with the filter of 2 ms, as on the wire."""
-LIMITS = StreamLimits(step_m=5e-4, step_rad=5e-3, travel_m=0.1, travel_rad=0.5, loss_s=0.2)
+LIMITS = StreamLimits(
+    step_m=1e-4, step_rad=math.radians(0.05), travel_m=0.06, travel_rad=0.262, loss_s=0.2
+)
+"""Those of the shipped cells. A longer step is refused there, and here, too."""
 _WANDER_LENGTH_M = 5e-3
 _LATE_SHARE, _LATE_PERIODS = 2e-3, 2
 """Ticks whose setpoint comes a period too late: the arm stands still for it."""
@@ -176,6 +181,7 @@ class InsertionStream(PoseStream):
     def __init__(self, world: ContactWorld) -> None:
         self.period_s, self.limits = PERIOD_S, LIMITS
         self._world, self._tick, self._sent_s = world, 1, world.now_s
+        self._last = world.flange
 
     @property
     def report(self) -> StreamReport:
@@ -187,9 +193,20 @@ class InsertionStream(PoseStream):
     async def advance(self, base_T_flange: RigidTransform) -> StreamReport:
         """See ``PoseStream``."""
         self._sent_s = self._world.now_s
-        self._world.tick(base_T_flange.as_matrix())
+        target = base_T_flange.as_matrix()
+        _require_step(target, self._last)
+        self._last = target
+        self._world.tick(target)
         self._tick += 1
         return self.report
+
+
+def _require_step(target: Array, last: Array) -> None:
+    step_m = float(np.linalg.norm(target[:3, 3] - last[:3, 3]))
+    # Two rotations that differ by a small angle have matrices that differ by its root of two.
+    step_rad = float(np.linalg.norm(target[:3, :3] - last[:3, :3])) / math.sqrt(2.0)
+    if not (step_m <= LIMITS.step_m + 1e-9 and step_rad <= LIMITS.step_rad + 1e-9):
+        raise TargetOutOfBounds(f"streamed step of {step_m * 1e3:.4f} mm and {step_rad:.6f} rad")
 
 
 def _orthonormal(pose: Array) -> Array:

@@ -16,8 +16,12 @@ from cellctl.geometry.pose import Array
 
 X, Y, Z, TILT_X, TILT_Y, YAW = range(6)
 _SHARE_OF_STEP = 0.45
-"""Share of the step that the controller accepts from tick to tick; path and admittance may each
-take as much."""
+"""Share of the step that the controller accepts from tick to tick, for the path."""
+_SHIFT_SHARE, _TURN_SHARE = 0.15, 0.2
+"""The same for each axis that gives way: all six together may then take another half, since three
+axes at a right angle add up by the root of three."""
+_ABOUT_AXES = 0.3
+"""Share of the greatest turn from tick to tick for each axis that gives way."""
 
 
 def fastest_m_s(loop: ContactLoop) -> float:
@@ -27,9 +31,16 @@ def fastest_m_s(loop: ContactLoop) -> float:
 
 def fastest_rad_s(loop: ContactLoop) -> float:
     """Greatest turning speed about the tip: the flange swings round it on its own lever."""
+    return _turning_rad_s(loop, _SHARE_OF_STEP, _SHARE_OF_STEP)
+
+
+def _turning_rad_s(loop: ContactLoop, share_of_way: float, share_of_turn: float) -> float:
     lever_m = float(np.linalg.norm(loop.frames.flange_T_tip.translation))
-    by_way = fastest_m_s(loop) / max(lever_m, 1e-6)
-    return min(_SHARE_OF_STEP * loop.stream.limits.step_rad / loop.period_s, by_way)
+    limits = loop.stream.limits
+    step_rad = min(
+        share_of_way * limits.step_m / max(lever_m, 1e-6), share_of_turn * limits.step_rad
+    )
+    return step_rad / loop.period_s
 
 
 def giving_way(
@@ -62,8 +73,9 @@ def _bounds(loop: ContactLoop, gains: AdmittanceGains) -> AdmittanceBounds:
     settings, lever_m = loop.settings, loop.settings.lever_m
     # Giving way at full speed must not take more than half of the force that is allowed.
     by_force_m_s = 0.5 * settings.limit_n / float(gains.damping[Z])
-    speed_m_s = min(settings.touch_speed_m_s, by_force_m_s, fastest_m_s(loop))
-    speed_rad_s = min(speed_m_s / lever_m, fastest_rad_s(loop))
+    by_step_m_s = _SHIFT_SHARE * loop.stream.limits.step_m / loop.period_s
+    speed_m_s = min(settings.touch_speed_m_s, by_force_m_s, by_step_m_s)
+    speed_rad_s = min(speed_m_s / lever_m, _turning_rad_s(loop, _TURN_SHARE, _ABOUT_AXES))
     way_m = (settings.give_way_m, settings.give_way_m, settings.follow_m)
     return AdmittanceBounds(
         speed=np.repeat([speed_m_s, speed_rad_s], 3),

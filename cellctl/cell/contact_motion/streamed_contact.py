@@ -38,8 +38,7 @@ from cellctl.geometry.pose import MM, Array
 
 _TURN_LEVER_M = 0.02
 """A turn on the way counts as the way of a point so far from the tip: about the length of a peg,
-of which any part may meet the part with the hole. What carries the peg swings through space that
-the cell keeps free, as it does on the way to the hole, which no such speed bounds."""
+which may meet the part with the hole. What carries it swings through space that is kept free."""
 _SHORTEST_M = 1e-6
 """A way shorter than this counts as this long, so that a speed along it can be stated at all."""
 _MET_RATIO = 0.8

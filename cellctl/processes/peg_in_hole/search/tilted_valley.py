@@ -29,8 +29,9 @@ _BACK_SPEEDS = 2.0
 """Near the wall the peg may stand in the mouth, and is not to be torn out."""
 _SIDE_SHARE = 0.7
 """Flanks are steep, and press and side force add up."""
-_LET_GO = 6
-"""Times that a peg may come to lean on a flank on its way along the valley."""
+_LET_GO = 12
+"""Times that a peg may come to lean on a flank on its way along the valley. Let go, friction keeps
+it beside the middle by as much as press and slope allow, so that it soon leans there again."""
 _BACK_M = (0.0, 0.4e-3, 0.12e-3)
 """Steps back from the wall before each crossing: where the valley is narrow it is found best."""
 
@@ -83,6 +84,7 @@ class _Valley:
         self._full_m = probe.parameters.tilted_dip.value
         self._speed = probe.parameters.touch_speed.value
         self._reach_m = 2 * probe.task.fit.bore_radius_m
+        self._here_m: Array = np.zeros(2)
         self._fallen = False
         self._against = False
 
@@ -162,7 +164,7 @@ class _Valley:
 
     async def _slide(self, point_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
         motion = await self._probe.slide(point_m[None, :], speed_m_s, until, side_share=_SIDE_SHARE)
-        self._here_m: Array = motion.last.task_position_tip_m[:2].copy()
+        self._here_m = motion.last.task_position_tip_m[:2].copy()
         return motion
 
     def dip_m(self, sample: ContactSample) -> float:
