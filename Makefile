@@ -79,7 +79,7 @@ campaign-antenna: venv
 
 # Searches take twenty minutes, whole cycles two to three hours; QUICK=1 draws few, in four minutes.
 campaign-insertion: venv
-	$(BIN)/python -m benchmarks.insertion.campaign $(if $(QUICK),--quick)
+	$(BIN)/python -m benchmarks.insertion.searches.campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.insertion.cycle_campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.insertion.trap_campaign $(if $(QUICK),--quick)
 	$(BIN)/python -m benchmarks.insertion.fault_campaign $(if $(QUICK),--quick)

@@ -15,11 +15,13 @@ from rich.table import Table
 
 from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
 from benchmarks.insertion.farmed import Line, farmed, jobs_of, parser_of, shipped_cell
+from benchmarks.insertion.tight_pins import TIGHT_PINS, tight_pin_cell
 from benchmarks.insertion.wilson import wilson_bounds
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from fakes.scenes.socket.peaks import ForcePeaks
 
 CELLS = ("pin", "connector")
+"""The shipped ones, which are of class A: they have chamfers."""
 TRIALS, QUICK_TRIALS = 300, 4
 _SEARCH_RATIO = 1.5
 """Multiple of the search force that a 20 ms mean may reach in the search (R3 of the study)."""
@@ -31,7 +33,8 @@ Job = tuple[str, int]
 def main() -> int:
     """Exit code."""
     parser = parser_of(__doc__, "cycles", TRIALS)
-    parser.add_argument("--cells", nargs="+", choices=CELLS, default=CELLS)
+    every = (*CELLS, *TIGHT_PINS)
+    parser.add_argument("--cells", nargs="+", choices=every, default=every)
     found = parser.parse_args()
     trials = found.n or (QUICK_TRIALS if found.quick else TRIALS)
     jobs = jobs_of(found.cells, found.seed, trials)
@@ -46,7 +49,11 @@ def main() -> int:
 
 def _run(job: Job) -> CycleOutcome:
     name, seed = job
-    return run_cycle(shipped_cell(name), seed)
+    return run_cycle(_cell(name), seed)
+
+
+def _cell(name: str) -> CycleCell:
+    return tight_pin_cell(name) if name in TIGHT_PINS else shipped_cell(name)
 
 
 def _written(job: Job, outcome: CycleOutcome) -> Mapping[str, Any]:
@@ -84,7 +91,7 @@ LINE = Line(_written, _read)
 
 def table(by_cell: dict[str, list[CycleOutcome]]) -> Table:
     """One column for each cell; a rate has the bounds of Wilson, a force its limit."""
-    columns = {cell: _column(shipped_cell(cell), outcomes) for cell, outcomes in by_cell.items()}
+    columns = {cell: _column(_cell(cell), outcomes) for cell, outcomes in by_cell.items()}
     shown = Table("", *columns, title="Whole cycles, against the truth")
     for row in zip(*columns.values(), strict=True):
         shown.add_row(row[0][0], *(value for _, value in row))

@@ -10,12 +10,13 @@ from benchmarks.insertion.contact_world import ContactWorld, Imperfections
 from benchmarks.insertion.cycle_campaign import table
 from benchmarks.insertion.cycles import CycleCell, CycleOutcome, run_cycle
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
+from cellctl.errors.robot import TargetOutOfBounds
 from cellctl.guard.report import TripReason
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.processes.peg_in_hole.stations import believed_frames
 from fakes.scenes.socket.part import draw_part
 from fakes.scenes.socket.peaks import ForcePeaks
-from fakes.world.frames import from_written
+from fakes.world.frames import displacement, from_written
 
 EXACT = Imperfections(0.0, 0.0, 1e-9, 1e-9)
 DOWN_M = 20e-6
@@ -117,3 +118,20 @@ def test_the_table_tells_what_is_called_inserted_and_is_not() -> None:
     assert "7.0 of 12" in said
     (false,) = [line for line in said.splitlines() if "are not" in line]
     assert "1" in false
+
+
+def test_a_longer_step_than_the_shipped_cells_allow_is_refused(cell: CycleCell) -> None:
+    above = from_written(cell.scenario.taught["arm"]["above_hole"])
+    part, rng = draw_part(cell.scenario, 3, 1), np.random.default_rng(3)
+    stream = ContactWorld(cell.scenario, part, above, EXACT, rng).stream
+
+    def advance(shift_m: float, turn_rad: float = 0.0) -> None:
+        turned = above * displacement([0.0, 0.0, 0.0], [turn_rad, 0.0, 0.0])
+        asyncio.run(stream.advance(displacement([shift_m, 0.0, 0.0], [0.0, 0.0, 0.0]) * turned))
+
+    advance(0.09e-3)
+    advance(0.18e-3, 0.8e-3)
+    with pytest.raises(TargetOutOfBounds):
+        advance(0.29e-3, 0.8e-3)
+    with pytest.raises(TargetOutOfBounds):
+        advance(0.18e-3, 1.7e-3)

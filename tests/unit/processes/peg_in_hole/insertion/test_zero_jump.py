@@ -66,6 +66,25 @@ def test_a_peg_that_slides_down_a_chamfer_is_none() -> None:
     assert dropped_n(slid, TASK) == 0.0
 
 
-def test_the_limit_lies_above_friction_and_noise() -> None:
+def leaning_on_two_points(against: list[float], moment_n_m: float) -> list[ContactSample]:
+    """The same forces 4 mm deep, with the moment of two points that rub in proportion to them."""
+    samples = felt(against)
+    for sample, force_n in zip(samples, against, strict=True):
+        sample.task_position_tip_m[2] -= 7e-3
+        sample.moment_n_m[1] = moment_n_m * force_n / max(against)
+    return samples
+
+
+@pytest.mark.parametrize(("moment_n_m", "least_n", "most_n"), [(0.07, 0.0, 1.5), (0.0, 4.5, 6.0)])
+def test_friction_of_two_points_that_lets_go_is_no_jump(
+    moment_n_m: float, least_n: float, most_n: float
+) -> None:
+    lets_go = [0.2, 1.0, 3.0, 5.0, 0.3, 0.2, 0.3]
+    dropped = dropped_n(leaning_on_two_points(lets_go, moment_n_m), TASK)
+    assert least_n <= dropped <= most_n
+
+
+def test_the_limit_lies_above_friction_noise_and_what_a_stiff_arm_goes_back_unseen() -> None:
     assert most_dropped_n(TASK.cell) == 3.0
-    assert most_dropped_n(pin(force_sigma_n=0.5).cell) == 4.0
+    assert most_dropped_n(pin(stiffness_n_m=1e5, force_sigma_n=0.5).cell) == 4.0
+    assert most_dropped_n(pin(stiffness_n_m=1e6, force_sigma_n=0.5).cell) == 5.0

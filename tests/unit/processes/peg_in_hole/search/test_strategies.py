@@ -143,3 +143,32 @@ def test_the_next_strategy_follows_when_the_first_finds_nothing() -> None:
     order = (SearchName.PATENT_MIDPOINT, SearchName.PATENT_CIRCUMCENTRE)
     assert asyncio.run(find_hole(probe, order)) is SearchName.PATENT_CIRCUMCENTRE
     assert np.hypot(*motions.true_offset_m) < task.fit.catch_radius_m
+
+
+class Lifting(KinematicMotions):
+    """Remembers how high it was lifted last."""
+
+    height_m = 0.0
+
+    async def back_out(self, height_m: float) -> ContactMotion:
+        self.height_m = height_m
+        return await super().back_out(height_m)
+
+
+def test_the_low_side_of_a_peg_that_leant_clears_the_face_before_it_stands_up() -> None:
+    task = pin()
+    rng = np.random.default_rng(1)
+    motions = Lifting(task, Truth.draw(task, rng), rng)
+    hole_map = HoleMap(task.cell.uncertainty_m, task.fit.catch_radius_m)
+    probe = TouchProbe(motions, task, search_parameters(task), hole_map, 120.0)
+    tilt_rad = probe.parameters.tilt.value
+    low_m = task.fit.peg_radius_m * np.sin(tilt_rad)
+
+    async def touch_twice() -> None:
+        await probe.touch_down(np.zeros(2), np.array([0.0, tilt_rad, 0.0]), -low_m)
+        await probe.touch_down(np.zeros(2), np.zeros(3))
+        assert motions.height_m > low_m
+        await probe.touch_down(np.zeros(2), np.zeros(3))
+        assert motions.height_m < low_m
+
+    asyncio.run(touch_twice())

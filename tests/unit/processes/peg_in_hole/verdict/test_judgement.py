@@ -81,7 +81,7 @@ def test_a_force_with_the_feed_is_none_that_a_hole_makes() -> None:
 
 
 def test_a_force_that_drops_in_the_feed_is_not_to_be_believed() -> None:
-    judgement = judge_peg(replace(GOOD, dropped_n=4.0), pin(), SEAT)
+    judgement = judge_peg(replace(GOOD, dropped_n=6.0), pin(), SEAT)
     assert isinstance(judgement.fault, ForceDropped)
 
 

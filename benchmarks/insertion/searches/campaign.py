@@ -16,8 +16,8 @@ from rich.console import Console
 from rich.progress import track
 from rich.table import Table
 
-from benchmarks.insertion.cases import CASES, SearchCase
-from benchmarks.insertion.trials import SearchTrialOutcome, run_search
+from benchmarks.insertion.searches.cases import CASES, SearchCase
+from benchmarks.insertion.searches.trials import SearchTrialOutcome, run_search
 from benchmarks.insertion.wilson import wilson_bounds
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from tests.rigs.insertion.traps import PegState, TrapOutcome, run_trap

@@ -1,7 +1,7 @@
 from dataclasses import replace
 
-from benchmarks.insertion.cases import CASES
-from benchmarks.insertion.trials import LIMIT_S, run_search
+from benchmarks.insertion.searches.cases import CASES
+from benchmarks.insertion.searches.trials import LIMIT_S, run_search
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 
 CHAMFERED = CASES[12].task

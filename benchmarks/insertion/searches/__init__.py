@@ -1,0 +1,1 @@
+"""Search strategies side by side over a height map, as in the table of the study."""
