@@ -40,8 +40,13 @@ def test_a_part_is_found_and_inserted(pin: OwnCell) -> None:
     assert "Forces and moments of the hole on the peg" in page
 
 
-@pytest.mark.parametrize("fault", ["world:hole_absent", "world:blocked"])
-def test_a_pin_that_cannot_be_inserted_is_not_called_good(pin: OwnCell, fault: str) -> None:
+@pytest.mark.parametrize(
+    ("fault", "alarms"),
+    [("world:hole_absent", ("F547", "F548")), ("world:blocked", ("F552", "F554"))],
+)
+def test_a_pin_that_cannot_be_inserted_is_not_called_good(
+    pin: OwnCell, fault: str, alarms: tuple[str, ...]
+) -> None:
     out = pin.folder / "run"
     demo = pin.demo(out, *PROCESS, "--seed", "1", "--fault", fault)
     assert demo.end(350) != 0
@@ -49,6 +54,9 @@ def test_a_pin_that_cannot_be_inserted_is_not_called_good(pin: OwnCell, fault: s
     result = json.loads((out / "result.json").read_text(encoding="utf-8"))
     assert result["result"] != "good"
     assert not result["seated"]
+    assert result["fault"].startswith(alarms)
+    # Drawn out to 10 mm over the face, from a seat that is 12 mm deep.
+    assert result["short_mm"] > 21.0
 
 
 @pytest.mark.parametrize(
