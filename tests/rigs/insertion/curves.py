@@ -47,6 +47,8 @@ class Inserted:
     """Sides at which there is one."""
     pushed: tuple[str, ...] = ("+x", "-x", "+y", "-y")
     push_n: float = 6.2
+    comes_back: bool = False
+    """After each push the peg is drawn back to the middle."""
     turn_n_m: tuple[float, ...] = ()
     """Moments that turns about the axis have met."""
     pull_n: float | None = None
@@ -113,7 +115,14 @@ def _push(recorder: _Recorder, side: str, resting: Array, pressed: Array) -> Non
     across = np.zeros(3)
     across[axis] = sign
     target = recorder.tip_mm.copy()
+    begun, before = len(recorder.kinds), recorder.motion + 1
     if side in made.walls:
+        # The force of the other wall goes, then there is none, then that of this wall grows.
+        for wall in (-sign, sign):
+            between = recorder.tip_mm.copy()
+            between[axis], between[2] = wall * made.play_mm / 2, resting[2]
+            if sign * (between[axis] - recorder.tip_mm[axis]) > 0.0:
+                recorder.go("touch", between, pressed)
         target[axis] = sign * (made.play_mm / 2 + made.push_n / made.stiffness_n_mm)
         force_n = -made.push_n * 1.02 * across
     else:
@@ -121,6 +130,13 @@ def _push(recorder: _Recorder, side: str, resting: Array, pressed: Array) -> Non
         force_n = -_FRICTION_N * across
     target[2] = resting[2] - made.lift_by_mm
     recorder.go("touch", target, pressed + force_n)
+    recorder.kinds[begun:] = [(before, "touch")] * (len(recorder.kinds) - begun)
+    if made.comes_back:
+        # Its force falls to nothing where it leaves the wall.
+        target[axis] = sign * made.play_mm / 2
+        recorder.go("comply", target.copy(), pressed)
+        target[axis] = 0.0
+        recorder.go("comply", target.copy(), pressed)
 
 
 def _noisy(recorder: _Recorder, seed: int) -> Array:

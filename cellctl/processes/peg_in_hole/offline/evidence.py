@@ -44,7 +44,7 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
         seat_slope_n_m=seat_slope_n_m(parts.feed),
         held_way_m=held_way_m(parts.feed, fit, task.cell.friction, task.cell.stiffness_n_m),
         unrubbed_way_m=unrubbed_way_m(parts.feed, fit, task.cell.stiffness_n_m),
-        with_feed_n=with_feed_n(parts.feed, task.cell),
+        with_feed_n=with_feed_n(parts.way_in, task.cell),
         dropped_n=dropped_n(parts.feed, task),
         capture=_capture(parts, task),
         greatest_force_n=max(greatest_axial_n(curve.samples), task.greatest_n),

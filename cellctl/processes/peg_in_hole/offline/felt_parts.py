@@ -19,6 +19,7 @@ from cellctl.processes.peg_in_hole.verdict.lateral import (
     Side,
     push_force_n,
 )
+from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST
 
 _MEAN_S = 10e-3
 """Time over which a force is averaged: ``force_sigma_n`` is that of ten samples at 1 kHz."""
@@ -31,6 +32,9 @@ _MOVED = 0.5
 _NEARLY = 0.9
 """Share of a push that counts as the whole: a mean over 10 ms lags behind a force that rises to its
 end."""
+_GROWS = _MOVED / SOFTEST / 4.0
+"""Share of a push by which it grows at least on the second half of that movement: half of the half
+of what arm and contact make on it, as soft as they may be."""
 _LIFTED_M = 1e-3
 """Higher than this over where a peg stands without force, it is being drawn out."""
 
@@ -55,12 +59,26 @@ def by_force(curve: PegCurve, task: JudgedTask) -> CurveParts:
     rest = after[last + 1 :]
     return CurveParts(
         feed=samples[begin : end + 1],
+        way_in=_way_in(samples[: end + 1], task),
         begun=_before_pushes(after, first),
         pushes=pushes,
         before_turns=rest[0] if rest else None,
         turned=_turned(rest),
         pulled=rest,
     )
+
+
+def _way_in(until_seat: Samples, task: JudgedTask) -> Samples:
+    """What went deeper between the walls than all before it, since the peg last was out of them.
+
+    A peg that is drawn back meanwhile is held by its walls, and that is no force with the feed.
+    """
+    depth_m = np.array([sample.task_position_tip_m[2] for sample in until_seat])
+    outside = np.flatnonzero(depth_m < task.fit.entry_depth_m)
+    begin = int(outside[-1]) + 1 if outside.size else 0
+    deepest_m = np.maximum.accumulate(depth_m[begin:])
+    deeper = np.flatnonzero(np.diff(deepest_m, prepend=-np.inf) > 0.0)
+    return tuple(until_seat[begin + int(index)] for index in deeper)
 
 
 def averaged(curve: PegCurve) -> Samples:
@@ -85,7 +103,12 @@ def _mean(block: Samples) -> ContactSample:
 
 
 def _first_contact(after: Samples, side: Side, task: JudgedTask) -> int | None:
-    """Where a push to a side meets its force, after a way along that side."""
+    """Where a push to a side meets its force, after a way along that side: as soon as it does,
+    since a run ends its push there, and what is pushed on yields without telling more.
+
+    A force that falls on that way is what the push to the other side has left, by a file whose
+    forces have the other sign.
+    """
     if not after:
         return None
     axis, sign = side
@@ -95,12 +118,21 @@ def _first_contact(after: Samples, side: Side, task: JudgedTask) -> int | None:
     moved_m = way_m - np.minimum.accumulate(way_m)
     pushed = against_n > _NEARLY * push_n
     met = np.flatnonzero(pushed & (moved_m > _MOVED * push_n / task.cell.stiffness_n_m))
-    if not met.size:
+    grows_n = _GROWS * push_n
+    begin = next((int(at) for at in met if _grown_n(way_m, against_n, int(at)) > grows_n), None)
+    if begin is None:
         return None
-    begin = int(met[0])
     let_go = np.flatnonzero(~pushed[begin:])
     end = begin + int(let_go[0]) if let_go.size else len(after)
-    return begin + int(np.argmax(against_n[begin:end]))
+    whole = np.flatnonzero(against_n[begin:end] >= push_n)
+    return begin + int(whole[0] if whole.size else np.argmax(against_n[begin:end]))
+
+
+def _grown_n(way_m: Array, against_n: Array, at: int) -> float:
+    """By how much the force has grown since the first half of the way that leads to a sample."""
+    turned = int(np.argmin(way_m[: at + 1]))
+    since_m = way_m[turned : at + 1] - way_m[turned]
+    return float(against_n[at] - against_n[turned : at + 1][since_m <= since_m[-1] / 2.0].max())
 
 
 def _pushed(

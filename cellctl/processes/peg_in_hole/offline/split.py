@@ -24,6 +24,8 @@ class CurveParts:
 
     feed: Samples
     """The last one, to the seat or to where the peg stands."""
+    way_in: Samples
+    """In which no force may act with the feed: all that is known of it, back to the chamfers."""
     begun: ContactSample | None
     """Pressed lightly, before the first push."""
     pushes: Mapping[Side, ContactMotion | None]
@@ -62,7 +64,7 @@ def by_motions(curve: PegCurve, task: JudgedTask) -> CurveParts | None:
     pressed = [samples[-1] for kind, samples in before_turns if kind is MotionKind.PRESS]
     begun, last = (pressed[0], pressed[-1]) if pressed else (None, None)
     # Every second turn goes back.
-    return CurveParts(feed, begun, pushes, last, tuple(turned[::2]), pulled)
+    return CurveParts(feed, feed, begun, pushes, last, tuple(turned[::2]), pulled)
 
 
 def _side(samples: Samples) -> Side | None:
@@ -76,5 +78,10 @@ def _push(samples: Samples, side: Side, task: JudgedTask) -> ContactMotion:
     axis, sign = side
     # The file has four decimals.
     least_n = push_force_n(task.cell) - 1e-3
-    met = any(-sign * float(sample.force_n[axis]) > least_n for sample in samples)
+    way_m = np.array([sign * float(sample.task_position_tip_m[axis]) for sample in samples])
+    against_n = np.array([-sign * float(sample.force_n[axis]) for sample in samples])
+    # On the first half of its way a push leaves the opposite wall, and forces of the other sign
+    # would look as if it met that one.
+    second = way_m - way_m[0] >= (way_m.max() - way_m[0]) / 2.0
+    met = bool((against_n[second] > least_n).any())
     return ContactMotion(Ended.FORCE if met else Ended.TRAVEL, samples)

@@ -13,7 +13,8 @@ class LateralCapture:
     not pushed at all and all others have resisted."""
     play_x_m: float | None
     play_y_m: float | None
-    """Way between both contacts, less what arm and contact give way; None without both."""
+    """Way between both contacts, less what arm and contact give way; None without both, and where
+    less is left than any arm makes of walls."""
     depth_change_m: float
     """Greatest change of depth meanwhile."""
     force_change_sigmas: float

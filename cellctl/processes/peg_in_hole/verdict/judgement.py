@@ -51,6 +51,7 @@ UNRUBBED = "way without the force of its contacts"
 SLIP, RETOUCH = "greatest force over grip force", "error of the touch on the rear"
 KEYED, PULL = "directions that resist a turn", "pull that was held"
 
+_SEAT = frozenset({DEPTH, LOW_FORCE, HIGH_FORCE, SLOPE})
 _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
     # The first that fits: what makes other figures worthless comes first. A peg on the face hardly
     # resists a push, which looks like a dead sensor too; hence slip before that. A sensor that
@@ -60,7 +61,7 @@ _FAULTS: tuple[tuple[frozenset[str], type[PegNotInserted]], ...] = (
     (frozenset({SLIP, RETOUCH}), PegSlipped),
     (frozenset({ALIVE}), SensorDead),
     (frozenset({HELD, UNRUBBED}), PegSlipped),
-    (frozenset({DEPTH, LOW_FORCE, HIGH_FORCE, SLOPE}), NotSeated),
+    (_SEAT, NotSeated),
     (frozenset({RESISTED, STEADY}), FalseSeat),
     (frozenset({PLAY_X, PLAY_Y}), HoleTooWide),
     (frozenset({KEYED, PULL}), PegNotHeld),
@@ -111,6 +112,10 @@ class PegJudgement:
     def fault(self) -> PegNotInserted | None:
         """The numbered fault; None for a peg that is inserted."""
         failed = {check.name for check in self.checks if not check.passed}
+        unpushed = {check.name for check in self.checks if isnan(check.value)} & {ALIVE}
+        if failed & _SEAT:
+            # A sensor is not dead because nobody has pushed; where the peg stands says more.
+            failed -= unpushed
         words = "; ".join(str(check) for check in self.checks if not check.passed)
         for names, fault in _FAULTS:
             if failed & names:
@@ -149,7 +154,7 @@ def _seat_checks(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLim
         LimitCheck(DEPTH, abs(depth_m - task.fit.depth_m) / _MM, _SEAT_MM, "mm"),
         LimitCheck(LOW_FORCE, force_n, seat.least_n, "N", "min"),
         LimitCheck(HIGH_FORCE, force_n, seat.most_n, "N"),
-        LimitCheck(SLOPE, slope, least_slope, "N/m", "min"),
+        LimitCheck(SLOPE, slope * _MM, least_slope * _MM, "N/mm", "min"),
     )
 
 

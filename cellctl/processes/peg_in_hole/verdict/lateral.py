@@ -112,4 +112,7 @@ def _play_m(
         yielded_m(push.samples, axis, sign, push_force_n(cell), cell.stiffness_n_m)
         for push, sign in ((first, 1.0), (second, -1.0))
     ]
-    return float(apart) - sum(yields_m)
+    play_m = float(apart) - sum(yields_m)
+    # Arms are at most as much stiffer across the hole as softer: what comes out below that, no
+    # walls and no arm can make, so it is no measurement.
+    return play_m if play_m > -(sum(yields_m) / SOFTEST + MARGIN_M) else None

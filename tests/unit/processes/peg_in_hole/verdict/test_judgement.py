@@ -5,12 +5,20 @@ import pytest
 from cellctl.processes.peg_in_hole.faults import (
     ForceActsWithFeed,
     ForceDropped,
+    NotSeated,
     PegNotHeld,
     PegSlipped,
+    SensorDead,
 )
 from cellctl.processes.peg_in_hole.plan.task import PartContacts
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
-from cellctl.processes.peg_in_hole.verdict.judgement import RETOUCH, SLIP, PegSeatLimits, judge_peg
+from cellctl.processes.peg_in_hole.verdict.judgement import (
+    RETOUCH,
+    SLIP,
+    SLOPE,
+    PegSeatLimits,
+    judge_peg,
+)
 from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
 from tests.unit.processes.peg_in_hole.tasks import pin
 
@@ -83,6 +91,19 @@ def test_a_force_with_the_feed_is_none_that_a_hole_makes() -> None:
 def test_a_force_that_drops_in_the_feed_is_not_to_be_believed() -> None:
     judgement = judge_peg(replace(GOOD, dropped_n=6.0), pin(), SEAT)
     assert isinstance(judgement.fault, ForceDropped)
+
+
+def test_a_part_that_nobody_has_pushed_is_named_by_where_it_stands() -> None:
+    short = replace(GOOD, depth_m=6e-3, capture=None)
+    assert isinstance(judge_peg(short, pin(), SEAT).fault, NotSeated)
+    assert isinstance(judge_peg(replace(GOOD, capture=None), pin(), SEAT).fault, SensorDead)
+    dead = replace(short, capture=LateralCapture(4, 0.04e-3, 0.05e-3, 0.01e-3, 1.0))
+    assert isinstance(judge_peg(dead, pin(), SEAT).fault, SensorDead)
+
+
+def test_the_rise_at_the_seat_is_told_as_pages_tell_it() -> None:
+    (rise,) = (one for one in judge_peg(GOOD, pin(), SEAT).checks if one.name == SLOPE)
+    assert str(rise).startswith("rise of the force at the seat 800 N/mm")
 
 
 def test_a_part_without_keys_needs_no_turn() -> None:

@@ -6,10 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cellctl.cell.contact_motion.motions import ContactMotion
+from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
-from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture, push_force_n
+from cellctl.processes.peg_in_hole.verdict.lateral import (
+    SIDES,
+    capture_of,
+    measure_capture,
+    push_force_n,
+)
 from tests.rigs.insertion.traps import PegState, StandingPeg
 from tests.unit.processes.peg_in_hole.tasks import pin
 
@@ -48,3 +53,32 @@ def test_a_push_of_a_stiff_arm_stays_below_the_limit(insertion_n: float) -> None
         grows_n = task.cell.stiffness_n_m * speed_m_s * grows_s
         assert push_force_n(task.cell) + grows_n < insertion_n
         assert grows_n > 1.0
+
+
+@pytest.mark.parametrize(
+    ("ends_mm", "play_mm"),
+    [
+        (0.12, 0.115),
+        (0.07, 0.015),  # walls without any play, and an arm of nearly the stated stiffness
+        (-0.06, None),
+        (-1.2, None),
+    ],
+)
+def test_a_play_that_no_walls_can_have_is_not_measured(
+    ends_mm: float, play_mm: float | None
+) -> None:
+    """Each push is met so far on its own side of the middle."""
+    task = pin(stiffness_n_m=1e5)
+    pushes = {}
+    for axis, sign in SIDES:
+        tip, force = np.zeros(3), np.zeros(3)
+        tip[axis], force[axis] = sign * ends_mm * 1e-3, -sign * push_force_n(task.cell)
+        sample = ContactSample(0.0, tip, np.zeros(3), force, np.zeros(3), 0.0)
+        pushes[axis, sign] = ContactMotion(Ended.FORCE, (sample,))
+    begun = ContactSample(0.0, np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3), 0.0)
+    found = capture_of(begun, pushes, task)
+    for play_m in (found.play_x_m, found.play_y_m):
+        if play_mm is None:
+            assert play_m is None
+        else:
+            assert play_m == pytest.approx(play_mm * 1e-3, abs=0.02e-3)
