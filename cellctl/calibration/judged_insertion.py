@@ -21,6 +21,8 @@ class JudgedInsertion:
     """Why the insertion is not good; None for a good one."""
     record: Mapping[str, Any]
     """Everything that was judged, as plain data."""
+    said: tuple[str, ...] = ()
+    """What the curve leaves open and no check can tell, in sentences."""
 
 
 InsertionJudge = Callable[[Path, Path], JudgedInsertion]

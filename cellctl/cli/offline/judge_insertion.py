@@ -41,6 +41,8 @@ def judge_insertion(
     judged = _judged(curve, connector, task)
     for check in judged.checks:
         typer.echo(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
+    for sentence in judged.said:
+        typer.echo(f"  {sentence}")
     typer.echo(judged.verdict)
     if judged.fault is not None:
         typer.echo(str(judged.fault))

@@ -36,7 +36,10 @@ from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 from cellctl.processes.antenna_module.insertion.curve import parse_curve
-from cellctl.processes.antenna_module.insertion.possible import require_possible_curve
+from cellctl.processes.antenna_module.insertion.possible import (
+    require_possible_curve,
+    unknown_zero,
+)
 from cellctl.processes.antenna_module.insertion.verdict import InsertionVerdict, judge_insertion
 
 T = TypeVar("T")
@@ -120,12 +123,15 @@ def judge_by_connector(curve: Path, connector: Path) -> JudgedInsertion:
     except InsertionCurveInvalid as fault:
         raise InsertionCurveInvalid(f"{curve}: {fault.detail}") from fault
     judgement = judge_insertion(read, drawing)
+    open_zero = unknown_zero(read, drawing)
+    said = () if open_zero is None else (open_zero,)
     return JudgedInsertion(
         judgement.verdict.value,
         judgement.verdict is InsertionVerdict.SEATED,
         judgement.checks,
         judgement.fault,
-        judgement.to_record(),
+        judgement.to_record() | {"left_open": list(said)},
+        said,
     )
 
 

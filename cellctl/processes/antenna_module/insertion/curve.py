@@ -11,6 +11,8 @@ from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
 
 COLUMNS = ("t_s", "z_mm", "fx_n", "fy_n", "fz_n", "mx_n_m", "my_n_m", "mz_n_m")
+_ALSO = {"time_s": "t_s", "mx_nm": "mx_n_m", "my_nm": "my_n_m", "mz_nm": "mz_n_m"}
+"""What the curve of a peg by touch calls its columns, which says the same."""
 _FEWEST = 20
 
 
@@ -72,12 +74,17 @@ class InsertionCurve:
 
 
 def parse_curve(text: str) -> InsertionCurve:
-    """The CSV file: columns ``COLUMNS``, in any order, others are ignored.
+    """The CSV file: columns ``COLUMNS``, by these or their other names, in any order; others are
+    ignored.
 
     Raises ``InsertionCurveInvalid`` with the line.
     """
     reader = csv.DictReader(io.StringIO(text))
     try:
+        written = reader.fieldnames or ()
+        reader.fieldnames = [
+            name if _ALSO.get(name, name) in written else _ALSO.get(name, name) for name in written
+        ]
         missing = [name for name in COLUMNS if name not in (reader.fieldnames or ())]
         if missing:
             raise InsertionCurveInvalid(f"missing column {', '.join(missing)}{_separated(text)}")

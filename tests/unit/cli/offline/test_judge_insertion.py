@@ -55,3 +55,20 @@ def test_what_was_inserted_is_said_once(tmp_path: Path) -> None:
     words = files(tmp_path, Inserted())
     assert run(*words[:2]).exit_code == 2
     assert run(*words, "--connector", words[3]).exit_code == 2
+
+
+@pytest.mark.parametrize(("least_mm", "said"), [(-1.0, False), (-0.4, True)])
+def test_what_a_curve_leaves_open_is_said_before_the_verdict(
+    tmp_path: Path, least_mm: float, said: bool
+) -> None:
+    head, *lines = Path("config/samples/plugging/seated.csv").read_text().splitlines()
+    kept = [line for line in lines if float(line.split(",")[1]) >= least_mm]
+    (tmp_path / "c.csv").write_text("\n".join([head, *kept]))
+    drawing = "config/samples/plugging/micro-d-15-holes.toml"
+    out = tmp_path / "verdict.json"
+    result = run(
+        "--curve", str(tmp_path / "c.csv"), "--connector", drawing, "--out", str(out)
+    )  # fmt: skip
+    assert result.exit_code == 0
+    assert ("So nothing shows that" in result.output) is said
+    assert bool(json.loads(out.read_text())["left_open"]) is said

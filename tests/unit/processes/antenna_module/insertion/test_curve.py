@@ -20,6 +20,14 @@ def test_a_file_is_read_back() -> None:
     assert len(list(again)) == len(first.t_s)
 
 
+def test_columns_may_be_called_as_those_of_a_peg_by_touch() -> None:
+    other = TEXT.replace("t_s", "time_s", 1).replace("_n_m", "_nm")
+    np.testing.assert_array_equal(parse_curve(other).moment_n_m, parse_curve(TEXT).moment_n_m)
+    np.testing.assert_array_equal(parse_curve(other).t_s, parse_curve(TEXT).t_s)
+    twice = "\n".join([f"{LINES[0]},time_s", *(f"{line},x" for line in LINES[1:])])
+    np.testing.assert_array_equal(parse_curve(twice).t_s, parse_curve(TEXT).t_s)
+
+
 @pytest.mark.parametrize(
     ("text", "word"),
     [

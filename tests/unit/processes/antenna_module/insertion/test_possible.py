@@ -8,7 +8,10 @@ import pytest
 
 from cellctl.processes.antenna_module.connector.connector import read_connector
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
-from cellctl.processes.antenna_module.insertion.possible import require_possible_curve
+from cellctl.processes.antenna_module.insertion.possible import (
+    require_possible_curve,
+    unknown_zero,
+)
 from tests.rigs.antenna.curves import Shape, curve
 
 SOCKET = read_connector(Path("config/connectors/micro-d-15-holes.toml"))
@@ -19,7 +22,8 @@ SOCKET = read_connector(Path("config/connectors/micro-d-15-holes.toml"))
     [
         Shape(),
         Shape(peak_n=6.0),
-        Shape(drift_n=-3.0),
+        Shape(drift_n=-0.2),
+        Shape(noise_n=0.5),
         Shape(pin_n_per_mm=115, pin_mm=(-4.4, 0.5)),
         Shape(side_n=6, axial_per_side=0.8),
         Shape(end_n=0.3),
@@ -56,3 +60,26 @@ def test_moments_about_the_sensor_are_named() -> None:
     moment = good.moment_n_m + np.cross(lever_m, good.force_n)
     with pytest.raises(InsertionCurveInvalid, match=r"30\.\d mm beside the middle.* 12\.6 mm acro"):
         require_possible_curve(replace(good, moment_n_m=moment), SOCKET)
+
+
+@pytest.mark.parametrize(
+    ("column", "off_n"), [(2, -3.0), (2, 0.6), (2, -12.0), (0, 0.6), (1, -0.6)]
+)
+def test_a_curve_that_was_not_tared_is_named(column: int, off_n: float) -> None:
+    """Else a pin that stands on the face is hidden by what the zero is off."""
+    good = curve()
+    force_n = good.force_n.copy()
+    force_n[:, column] += off_n
+    name = ("fx_n", "fy_n", "fz_n")[column]
+    with pytest.raises(
+        InsertionCurveInvalid, match=rf"{name} is .* N in the mean.* without a tare"
+    ):
+        require_possible_curve(replace(good, force_n=force_n), SOCKET)
+
+
+def test_a_curve_that_begins_at_the_touch_shows_no_zero() -> None:
+    good = curve()
+    assert unknown_zero(good, SOCKET) is None
+    late = good.after(float(good.t_s[good.depth_m < -0.4e-3][-1]))
+    require_possible_curve(late, SOCKET)
+    assert unknown_zero(late, SOCKET) is not None
