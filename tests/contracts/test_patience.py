@@ -19,7 +19,8 @@ from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
 from tests.contracts.suites.camera import CameraContract, SingleCameraBench
 from tests.contracts.suites.digital_io import DigitalIoBench, DigitalIoContract
 from tests.contracts.suites.gripper import GripperBench, GripperContract
-from tests.contracts.suites.robot import RobotBench, RobotContract
+from tests.contracts.suites.robot import RobotContract
+from tests.contracts.suites.robot_bench import RobotBench
 from tests.contracts.suites.stereo_camera import StereoCameraBench, StereoCameraContract
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
 from tests.contracts.suites.target_tracker import TargetTrackerContract, TrackerBench

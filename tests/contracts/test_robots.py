@@ -14,25 +14,38 @@ from cellctl.clock import now_s
 from cellctl.geometry.box import Box
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, StreamingRobot
+from cellctl.interfaces.motion_bounds import MotionBounds
+from cellctl.interfaces.robot import RobotMode
 from drivers.robot.siasun.driver import SiasunRobot
-from tests.contracts.inprocess.robot import MAX_SPEED_M_S, InProcessRobot
+from tests.contracts.inprocess.robot import (
+    AT_REACH,
+    MAX_SPEED_M_S,
+    RATED_RAD_S,
+    InProcessRobot,
+)
 from tests.contracts.inprocess.streaming_robot import InProcessStreamingRobot
-from tests.contracts.suites.robot import RobotBench, RobotContract
+from tests.contracts.suites.robot import RobotContract
+from tests.contracts.suites.robot_bench import Panel, RobotBench
 from tests.contracts.suites.streaming_robot import StreamingBench, StreamingRobotContract
 from tests.rigs.wire.job_rig import JobRig, job_rig
 from tests.rigs.wire.sjl_rig import Rig, sjl_rig
-from tests.rigs.wire.standing_arm import READY_DEG
+from tests.rigs.wire.standing_arm import CEILING, LOW_ROOM_MM, RATED_RAD_S_OF_FIRST, READY_DEG
 
 
 class InProcessBench(RobotBench):
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
     outside_joints_rad = np.array([0.0, 0.0, 3.2, 0.0, 0.0, 0.0])
+    edge, beyond_edge = AT_REACH
     max_speed_m_s = MAX_SPEED_M_S
+    joint_speed_rad_s = RATED_RAD_S
 
     def __init__(self, memory: InProcessRobot, robot: Robot | None = None) -> None:
         """``robot``: what stands before the robot in memory, if anything does."""
         self.memory = memory
         self.robot = memory if robot is None else robot
+
+    def stated_bounds(self) -> MotionBounds:
+        return InProcessRobot.bounds(None)
 
     def commands(self) -> int:
         return self.memory.commands
@@ -43,8 +56,24 @@ class InProcessBench(RobotBench):
     def joints_rad(self) -> Array:
         return self.memory.joints_rad
 
-    def press_emergency_stop(self) -> None:
-        self.memory.emergency_stop = True
+    def set_panel(self, panel: Panel) -> None:
+        self.memory.emergency_stop = panel is Panel.EMERGENCY_STOP
+        self.memory.drives_on = panel is not Panel.DRIVES_OFF
+        self.memory.mode = RobotMode.MANUAL if panel is Panel.MANUAL else RobotMode.REMOTE
+        self.memory.error_code = 7 if panel is Panel.ERROR else 0
+
+    def turn_override_down(self) -> float:
+        self.memory.override_ratio = 0.5
+        return 0.5
+
+    def refuse_motion(self) -> None:
+        self.memory.refuses = True
+
+    def ignore_stops(self) -> None:
+        self.memory.deaf = True
+
+    def release_at_the_panel(self) -> None:
+        """Its only latch is the driver's."""
 
     def moving(self) -> bool:
         return self.memory.moving
@@ -60,6 +89,8 @@ class SiasunBench(RobotBench):
     robot: SiasunRobot
     outside = RigidTransform.from_translation([5.0, 0.0, 0.0])
     outside_joints_rad = np.radians([*READY_DEG[:5], 361.0])
+    edge, beyond_edge = CEILING
+    joint_speed_rad_s = RATED_RAD_S_OF_FIRST
 
     def __init__(self, rig: Rig | JobRig) -> None:
         self.rig = rig
@@ -77,6 +108,9 @@ class SiasunBench(RobotBench):
     async def connect(self) -> None:
         await self.rig.connect()
 
+    def stated_bounds(self) -> MotionBounds:
+        return SiasunRobot.bounds(self.rig.settings)
+
     def commands(self) -> int:
         return self._started
 
@@ -86,8 +120,28 @@ class SiasunBench(RobotBench):
     def joints_rad(self) -> Array:
         return self.rig.arm.joints(self.rig.controller._clock())
 
-    def press_emergency_stop(self) -> None:
-        self.rig.controller.faults.inject("emergency_stop")
+    def set_panel(self, panel: Panel) -> None:
+        self.rig.controller.faults.inject(
+            {
+                Panel.EMERGENCY_STOP: "emergency_stop",
+                Panel.MANUAL: "manual_mode",
+                Panel.DRIVES_OFF: "drives_off",
+                Panel.ERROR: "vendor_error",
+            }[panel]
+        )
+
+    def turn_override_down(self) -> float:
+        self.rig.controller.faults.inject("override_zero")
+        return 0.0
+
+    def refuse_motion(self) -> None:
+        self.rig.controller.faults.inject("reject", count=1)
+
+    def ignore_stops(self) -> None:
+        self.rig.controller.faults.inject("ignore_stop")
+
+    def release_at_the_panel(self) -> None:
+        self.rig.release_latch()
 
     def moving(self) -> bool:
         return self.rig.controller.moving()
@@ -181,7 +235,7 @@ class TestSiasunRobot(RobotContract):
 
     @pytest.fixture
     async def bench(self) -> AsyncIterator[RobotBench]:
-        async with sjl_rig() as rig:
+        async with sjl_rig(workspace_max_mm=LOW_ROOM_MM) as rig:
             yield SiasunBench(rig)
 
 
@@ -192,7 +246,7 @@ class TestSiasunRobotOnItsJobs(RobotContract):
 
     @pytest.fixture
     async def bench(self) -> AsyncIterator[RobotBench]:
-        async with job_rig() as rig:
+        async with job_rig(workspace_max_mm=LOW_ROOM_MM) as rig:
             yield SiasunBench(rig)
 
 

@@ -31,6 +31,9 @@ class InProcessBench(StopBench):
     def flange(self) -> RigidTransform:
         return FLANGE
 
+    def flood(self) -> None:
+        """Nothing is read from anywhere."""
+
     def cut(self) -> None:
         self.memory.lost = True
 
@@ -54,6 +57,9 @@ class SiasunBench(StopBench):
 
     def flange(self) -> RigidTransform:
         return self._thread.call(lambda: self._rig.arm.encoder_pose(self._rig.controller._clock()))
+
+    def flood(self) -> None:
+        self._rig.wires["GRD"].back.repeat_next = 20_000
 
     def cut(self) -> None:
         self._thread.call(self._rig.wires["GRD"].reset)

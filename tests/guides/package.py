@@ -54,9 +54,11 @@ def guide_package(guide: Path, name: str) -> tuple[Any, Any]:
     return written, installed
 
 
-def contract_of(folder: Path, site: Path) -> "subprocess.CompletedProcess[str]":
-    """The contract that a guide puts its package to, as ``make test`` would run it."""
+def contract_of(folder: Path, site: Path, only: str = "") -> "subprocess.CompletedProcess[str]":
+    """The contract that a guide puts its package to, as ``make test`` would run it. ``only``:
+    clauses with this in their names."""
     options = ["-c", str(folder / "pyproject.toml"), "-p", "no:cacheprovider", "-p", "no:xdist"]
+    options += ["-k", only] if only else []
     return run("pytest", *options, "-q", "-W", "error", str(folder / "contract"), path=(ROOT, site))
 
 

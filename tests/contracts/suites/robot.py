@@ -1,9 +1,6 @@
 """What every robot must do. A test class derives from ``RobotContract`` and gives it a bench."""
 
 import asyncio
-from abc import ABC, abstractmethod
-from collections.abc import Awaitable
-from typing import TypeVar
 
 import numpy as np
 import pytest
@@ -16,104 +13,15 @@ from cellctl.errors.robot import (
     MotionAborted,
     MotionRejected,
     NotRearmed,
-    RobotNotReady,
     TargetOutOfBounds,
 )
-from cellctl.geometry.pose import Array
-from cellctl.interfaces.robot import Robot, RobotState
-
-Value = TypeVar("Value")
-Move = "asyncio.Task[RobotState]"
+from tests.contracts.suites.robot_bench import RobotBench, within
+from tests.contracts.suites.robot_figures import RobotFigures
+from tests.contracts.suites.robot_latch import RobotLatch
 
 
-class RobotBench(ABC):
-    """A robot under test and what is known about it from outside. ``robot`` is not connected."""
-
-    robot: Robot
-    outside: RigidTransform
-    """A pose beyond the bounds."""
-    outside_joints_rad: Array
-    """Joints beyond the bounds, shape (6,)."""
-    max_speed_m_s: float
-
-    async def connect(self) -> None:
-        """Connect the robot; benches whose far end must be started do that here."""
-        await self.robot.connect()
-
-    @abstractmethod
-    def commands(self) -> int:
-        """Motions that the controller has been told to make."""
-
-    @abstractmethod
-    def flange(self) -> RigidTransform:
-        """Where the flange is, whatever the driver says."""
-
-    @abstractmethod
-    def joints_rad(self) -> Array:
-        """Where the joints are, whatever the driver says; shape (6,)."""
-
-    @abstractmethod
-    def moving(self) -> bool:
-        """Whether the arm moves, whatever the driver says. It has mass: after a stop it moves on
-        for a while."""
-
-    @abstractmethod
-    def press_emergency_stop(self) -> None:
-        """Press it, until the test ends."""
-
-    @abstractmethod
-    def freeze(self) -> None:
-        """The controller's reports stop coming, or repeat themselves, until the test ends."""
-
-    @abstractmethod
-    def cut(self) -> None:
-        """Break the link. The controller comes back by itself."""
-
-
-async def within(limit_s: float, awaitable: Awaitable[Value]) -> Value:
-    async with asyncio.timeout(limit_s):
-        return await awaitable
-
-
-class RobotContract(ABC):
+class RobotContract(RobotFigures, RobotLatch):
     """Written once; no clause may be left out by a driver."""
-
-    @pytest.fixture
-    @abstractmethod
-    async def bench(self) -> RobotBench:
-        """A fresh bench, torn down after the test."""
-
-    @pytest.fixture
-    async def connected(self, bench: RobotBench) -> RobotBench:
-        await bench.connect()
-        return bench
-
-    @staticmethod
-    def target(bench: RobotBench, dz_mm: float) -> RigidTransform:
-        here = bench.robot.state().base_T_flange
-        return RigidTransform.from_translation([0.0, 0.0, dz_mm / 1000]) * here
-
-    def move(self, bench: RobotBench, dz_mm: float = 80.0) -> "asyncio.Task[RobotState]":
-        target = self.target(bench, dz_mm)
-        move = bench.robot.move_linear(target, speed_m_s=0.08, acceleration_m_s2=1.0)
-        return asyncio.create_task(move)
-
-    async def begin(self, bench: RobotBench) -> "asyncio.Task[RobotState]":
-        """A long motion that has begun."""
-        move = self.move(bench)
-        async with asyncio.timeout(2.0):
-            while not bench.moving():
-                await asyncio.wait({move}, timeout=0.005)
-        return move
-
-    async def rearm(self, bench: RobotBench) -> None:
-        """Re-arm as an operator does: again until the link is back and the controller accepts."""
-        async with asyncio.timeout(5.0):
-            while True:
-                try:
-                    return await bench.robot.rearm()
-                except CellError:
-                    await asyncio.sleep(0.05)
 
     # --- connecting
 
@@ -206,16 +114,6 @@ class RobotContract(ABC):
         assert np.allclose(connected.joints_rad(), joints_rad, atol=1e-4)
         self.says_where_it_is(connected)
 
-    async def test_an_arm_that_is_not_ready_is_not_moved(self, connected: RobotBench) -> None:
-        robot, here = connected.robot, self.target(connected, 2.0)
-        connected.press_emergency_stop()
-        async with asyncio.timeout(2.0):
-            while robot.state().ready:  # noqa: ASYNC110  no event for it
-                await asyncio.sleep(0.01)
-        with pytest.raises((RobotNotReady, NotRearmed)):
-            await robot.move_linear(here, speed_m_s=0.05, acceleration_m_s2=1.0)
-        assert connected.commands() == 0
-
     async def test_one_motion_at_a_time(self, connected: RobotBench) -> None:
         move = await self.begin(connected)
         with pytest.raises(MotionRejected):
@@ -224,23 +122,33 @@ class RobotContract(ABC):
 
     async def test_targets_are_bounded(self, connected: RobotBench) -> None:
         robot, here = connected.robot, self.target(connected, 0.0)
-        fast = connected.max_speed_m_s * 1.01
+        fast, nan = connected.max_speed_m_s * 1.01, float("nan")
+        nowhere = RigidTransform.from_translation([np.nan, 0.0, 0.0])
         turn = RigidTransform.from_rotation(Rotation.from_euler("z", 20.0, degrees=True))
         refused = [
             robot.move_linear(connected.outside, speed_m_s=0.05, acceleration_m_s2=1.0),
             robot.move_linear(here, speed_m_s=fast, acceleration_m_s2=1.0),
             robot.move_linear(here, speed_m_s=-0.05, acceleration_m_s2=1.0),
-            robot.move_linear(here, speed_m_s=float("nan"), acceleration_m_s2=1.0),
+            robot.move_linear(here, speed_m_s=nan, acceleration_m_s2=1.0),
+            robot.move_linear(here, speed_m_s=0.05, acceleration_m_s2=nan),
+            robot.move_linear(here, speed_m_s=0.05, acceleration_m_s2=-1.0),
+            robot.move_linear(here, speed_m_s=0.05, acceleration_m_s2=float("inf")),
+            robot.move_linear(nowhere, speed_m_s=0.05, acceleration_m_s2=1.0),
             robot.move_joint(np.full(6, np.nan), speed_ratio=0.1),
+            robot.move_joint(np.zeros(6), speed_ratio=nan),
+            robot.move_joint(np.zeros(6), speed_ratio=0.0),
             robot.move_joint(np.zeros(6), speed_ratio=1.01),
             robot.move_joint(connected.outside_joints_rad, speed_ratio=0.1),
             robot.step(connected.outside, speed_m_s=0.01),
+            robot.step(nowhere, speed_m_s=0.01),
+            robot.step(here, speed_m_s=fast),
+            robot.step(here, speed_m_s=nan),
             robot.step(self.target(connected, 50.0), speed_m_s=0.01),
             robot.step(here * turn, speed_m_s=0.01),
         ]
         for move in refused:
             with pytest.raises(TargetOutOfBounds):
-                await move
+                await within(2.0, move)
         assert connected.commands() == 0
 
     # --- stopping
@@ -298,15 +206,6 @@ class RobotContract(ABC):
             last_s = now_s()
         await stop
         assert max(gaps_s) < 0.2
-
-    async def test_connecting_releases_no_latch(self, connected: RobotBench) -> None:
-        await within(2.0, connected.robot.stop())
-        await connected.robot.disconnect()
-        await within(5.0, connected.robot.connect())
-        assert connected.robot.state().stop_latched
-        with pytest.raises(NotRearmed):
-            await self.move(connected, 2.0)
-        assert connected.commands() == 0
 
     async def test_cancellation_stops_first(self, connected: RobotBench) -> None:
         move = await self.begin(connected)

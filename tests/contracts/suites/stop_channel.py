@@ -1,5 +1,6 @@
 """What every stop channel of the guard must do. The interface blocks, so these tests do too."""
 
+import contextlib
 import select
 import time
 from abc import ABC, abstractmethod
@@ -31,6 +32,10 @@ class StopBench(ABC):
     def flange(self) -> RigidTransform:
         """``base_T_flange``, whatever the driver says; turned so that its matrix differs from its
         transpose."""
+
+    @abstractmethod
+    def flood(self) -> None:
+        """The controller sends as many reports at once as the sockets hold, some megabytes."""
 
     @abstractmethod
     def cut(self) -> None:
@@ -100,6 +105,24 @@ class StopChannelContract(ABC):
         for _ in range(10):
             opened.channel.poll()
         assert time.monotonic() - start_s < 0.1
+
+    def test_poll_reads_a_bounded_amount(self, opened: StopBench) -> None:
+        """A robot that floods the channel must not keep the guard from its samples. A channel may
+        take a flood for a fault."""
+        self.watch(opened, lambda _: True)
+        opened.flood()
+        longest_s, deadline_s = 0.0, time.monotonic() + 1.0
+        with contextlib.suppress(LinkError):
+            while time.monotonic() < deadline_s:
+                opened.channel.heartbeat()
+                # What this thread has computed: how busy the PC is does not count.
+                before_s = time.thread_time()
+                try:
+                    opened.channel.poll()
+                finally:
+                    longest_s = max(longest_s, time.thread_time() - before_s)
+                time.sleep(0.02)
+        assert longest_s < 0.1
 
     def test_stop_works_twice_and_latches(self, opened: StopBench) -> None:
         opened.channel.request_stop()

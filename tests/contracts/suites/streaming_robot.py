@@ -26,7 +26,7 @@ from cellctl.interfaces.streaming_robot import (
     StreamLimits,
     StreamReport,
 )
-from tests.contracts.suites.robot import RobotBench, within
+from tests.contracts.suites.robot_bench import RobotBench, within
 
 Body = Callable[[PoseStream], Awaitable[object]]
 CLOSE_M = 2e-6

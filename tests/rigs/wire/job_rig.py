@@ -40,6 +40,12 @@ class JobRig:
         background job."""
         self.controller.memory.strings[_REPORT_WORD] = "X" * 120
 
+    def release_latch(self) -> None:
+        """What REARM does to the counts of stops, by somebody else."""
+        numbers = self.controller.memory.numbers
+        numbers["I", 63], numbers["I", 64] = numbers["I", 61], numbers["I", 62]
+        numbers["I", 83] = 0
+
     def turn(self) -> None:
         """A job begins a motion, with the contact of STA closed as if the daemon were there."""
         self.controller.memory.outputs["DO", 9] = 1

@@ -26,6 +26,8 @@ class Chaos:
     delay_s: float = 0.0
     corrupt_in: int | None = None
     """Flip the lowest bit of the byte that many bytes from now."""
+    repeat_next: int = 1
+    """The next piece goes on so many times."""
     drop_bytes: int = 0
     """Swallow the next so many bytes."""
     blocked: bool = False
@@ -37,7 +39,8 @@ class Chaos:
             return b""
         dropped = min(self.drop_bytes, len(data))
         self.drop_bytes -= dropped
-        data = data[dropped:]
+        data = data[dropped:] * self.repeat_next
+        self.repeat_next = 1
         if self.corrupt_in is None:
             return data
         if self.corrupt_in >= len(data):

@@ -51,6 +51,10 @@ class Rig:
     async def connect(self) -> None:
         await connect_both(self.robot, self.controller.start)
 
+    def release_latch(self) -> None:
+        """What REARM does, by somebody else."""
+        self.controller.logic.latched = False
+
 
 async def connect_both(robot: SiasunRobot, start_controller: Callable[[], object]) -> None:
     """Start the controller as soon as the driver listens, which saves it a retry."""

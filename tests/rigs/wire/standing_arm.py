@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import RigidTransform
 
 from fakes.scenario_file.sections import Robot
 from fakes.scenes.load import load
@@ -35,3 +36,17 @@ def standing_arm(
     arm.start_joint(0.0, np.radians(stands_deg), 100.0)
     started_s = time.monotonic() - arm.standstill_s
     return arm, lambda: time.monotonic() - started_s
+
+
+def _raised_to(z_m: float) -> RigidTransform:
+    """Straight above or below where the arm stands with ``READY_DEG``."""
+    arm, clock = standing_arm()
+    stands = arm.encoder_pose(clock())
+    return RigidTransform.from_translation([0.0, 0.0, z_m - stands.translation[2]]) * stands
+
+
+LOW_ROOM_MM = (2500.0, 900.0, 1080.0)
+"""Upper corner of a box that ends not far above the standing arm."""
+CEILING = (_raised_to(1.0799), _raised_to(1.0801))
+"""Just within and just beyond that box."""
+RATED_RAD_S_OF_FIRST = float(np.radians(_drawn()[0].rated_deg_s[0]))
