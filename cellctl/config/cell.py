@@ -39,8 +39,8 @@ class Plc(Section):
     heartbeat_timeout_s: Annotated[float, Field(ge=0.5, le=10)] = 1.5
     """Time without a new value of the line's heartbeat after which the line counts as lost."""
     allowed_clients: tuple[str, ...] = ()
-    """Addresses or networks that may connect, ``0.0.0.0/0`` for any; may be empty where only this
-    PC can connect. Names are not looked up."""
+    """Addresses or networks that may connect, and so may start the cell (``0.0.0.0/0``: everybody
+    in the network); may be empty where only this PC can connect. Names are not looked up."""
 
     @field_validator("allowed_clients")
     @classmethod
@@ -57,8 +57,8 @@ class Plc(Section):
         # said and not come from a line that was forgotten.
         if not self.allowed_clients and not _is_this_pc_alone(self.host):
             raise ValueError(
-                "allowed_clients must list the line's address when host is not of this PC alone; "
-                "0.0.0.0/0 lets every address in"
+                "allowed_clients must list the line's address when host is not of this PC alone: "
+                "Modbus asks no password, and whoever may connect may start the cell"
             )
         return self
 

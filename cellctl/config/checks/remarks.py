@@ -29,14 +29,15 @@ _COUPLERS = (plugins.GRIPPER, plugins.DIGITAL_IO)
 
 
 def cell_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Remarks on what belongs to no process; of fake cells, all of whose addresses are of this PC,
-    none on these."""
+    """Remarks on what belongs to no process; of fake cells, whose addresses are of a PC, none on
+    how these go together."""
     yield from _gripper_channels(cell)
     yield from _starts_of_joint_moves(cell)
-    if cell.simulated:
-        return
     yield from _open_to_all(cell)
     yield from _many_clients(cell)
+    yield from _in_the_internet(cell)
+    if cell.simulated:
+        return
     yield from _networks_of_several_robots(cell)
     yield from _relative(cell)
     yield from _other_networks(cell)
@@ -83,6 +84,23 @@ def _many_clients(cell: CellConfig) -> Iterator[ConfigIssue]:
             )
             yield ConfigIssue("plc.allowed_clients", str(list(cell.plc.allowed_clients)), said)
             return
+
+
+def _in_the_internet(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Devices at addresses that are not those of a machine, nor of a PC that plays one."""
+    for path, (_, device) in cell.devices().items():
+        for key, written in device.settings.items():
+            if isinstance(written, str) and _is_public(written):
+                said = (
+                    "an address of the internet, which no device of a cell has"
+                    f"{', and no fake one' if cell.simulated else ''}; right if the plant gives "
+                    "its machines such addresses"
+                )
+                yield ConfigIssue(f"{path}.settings.{key}", repr(written), said)
+
+
+def _is_public(written: str) -> bool:
+    return is_address(written) and ipaddress.ip_address(written).is_global
 
 
 def _networks_of_several_robots(cell: CellConfig) -> Iterator[ConfigIssue]:

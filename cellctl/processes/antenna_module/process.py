@@ -96,7 +96,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         """Another board than that of the stored cameras, and looks beside what was measured."""
         from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
         from cellctl.processes.antenna_module.checks.above import above_remarks
-        from cellctl.processes.antenna_module.checks.drawn import holding_remarks
+        from cellctl.processes.antenna_module.checks.drawn import capture_remarks, holding_remarks
         from cellctl.processes.antenna_module.checks.figures import board_remarks
         from cellctl.processes.antenna_module.checks.looks import look_remarks
         from cellctl.processes.antenna_module.checks.plausible import marks_remarks
@@ -108,6 +108,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         yield from look_remarks(cell, plugged, folder)
         yield from above_remarks(cell, plugged, key)
         yield from marks_remarks(plugged, key)
+        yield from capture_remarks(plugged, key, folder)
         yield from holding_remarks(plugged, key, folder)
         yield from uncalibrated_remarks(cell, plugged, folder)
         yield from tool_floor_remarks(cell, plugged.device(ARM), plugged.flange_T_plug)

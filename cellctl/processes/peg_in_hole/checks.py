@@ -7,6 +7,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
 from cellctl.errors import CellError
 from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
+from cellctl.processes.peg_in_hole.plausible.seat import seat_order_issues
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ARM, FORCE
 from cellctl.processes.peg_in_hole.settings import PegSettings
@@ -23,9 +24,7 @@ def recipe_issues(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[Con
     if not forces.search_n <= forces.insertion_n < forces.fault_n:
         found = f"{forces.search_n:g}, {forces.insertion_n:g}, {forces.fault_n:g}"
         yield ConfigIssue(f"{key}.forces", found, "search_n <= insertion_n < fault_n")
-    if not recipe.seat.least_n < recipe.seat.most_n:
-        found = f"{recipe.seat.least_n:g}, {recipe.seat.most_n:g}"
-        yield ConfigIssue(f"{key}.seat", found, "least_n < most_n")
+    yield from seat_order_issues(recipe.seat, f"{key}.seat")
     try:
         cycle_plan(recipe, cast(PegSettings, cell.processes[recipe.process]))
     except CellError as fault:

@@ -84,6 +84,18 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         return recipe_remarks(cell, cast(PegRecipe, recipe), key, folder)
 
     @classmethod
+    def not_yet_checked(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,
+        folder: Path,  # noqa: ARG003
+    ) -> Iterable[str]:
+        """What only the first touch of the face shows."""
+        from cellctl.processes.peg_in_hole.plausible.remarks import not_yet_checked
+
+        return not_yet_checked(cast(PegRecipe, recipe))
+
+    @classmethod
     def moves(
         cls,
         cell: CellConfig,

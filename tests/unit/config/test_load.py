@@ -130,7 +130,8 @@ def test_a_port_that_others_reach_names_its_clients(tmp_path: Path, host: str) -
     line = 'host = "127.0.0.1"\nport = 5020'
     (problem,) = problems(changed(tmp_path, h=(line, f'host = "{host}"\nport = 5020')))
     assert problem.key == "plc.host"
-    assert "0.0.0.0/0" in problem.allowed
+    assert "whoever may connect may start the cell" in problem.allowed
+    assert "0.0.0.0/0" not in problem.allowed
 
 
 def test_a_port_may_be_open_to_everybody_where_that_is_said(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from cellctl.cli.commands import whole_app
 from cellctl.config import problems_before_commissioning
 from cellctl.config.commissioning import examine_before_commissioning
 from tests.unit.config.between_arms import BETWEEN_ARMS
+from tests.unit.config.fresh_cells import FRESH_CELLS, FRESH_CELLS_PASS
 from tests.unit.config.fresh_eyes import FRESH_EYES, FRESH_EYES_PASSES
 from tests.unit.config.mistake import Mistake, Undecided
 from tests.unit.config.mistakes import MISTAKES
@@ -51,7 +52,7 @@ SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
 ALL = (
     *(MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS),
-    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES),
+    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES + FRESH_CELLS),
 )
 
 
@@ -88,7 +89,7 @@ def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) 
 
 @pytest.mark.parametrize(
     "case",
-    UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK + FRESH_EYES_PASSES,
+    UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK + FRESH_EYES_PASSES + FRESH_CELLS_PASS,
     ids=lambda one: one.reason,
 )
 def test_what_nobody_can_decide_passes_with_a_remark_where_there_is_one(
@@ -106,6 +107,15 @@ def test_what_nobody_can_decide_passes_with_a_remark_where_there_is_one(
         done = CliRunner().invoke(whole_app(), ["check", str(path), "--json"])
         assert done.exit_code == 0
         assert slip.key in {one["key"] for one in json.loads(done.stdout)["remarks"]}
+
+
+def test_what_only_the_first_touch_shows_is_said() -> None:
+    for name, said in (("insertion-connector.toml", True), ("insertion-pin.toml", False)):
+        done = CliRunner().invoke(whole_app(), ["check", str(CONFIG / name), "--json"])
+        assert (
+            any("datum_depth_mm" in one for one in json.loads(done.stdout)["not_checked_yet"])
+            is said
+        )
 
 
 def test_shipped_cell_files_have_no_remarks() -> None:

@@ -62,7 +62,7 @@ def _sensors(cell: CellConfig, far: set[str]) -> Iterator[ConfigIssue]:
 
 
 def mounted_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Force sensors that do not lie flat on their flange."""
+    """Force sensors that do not lie flat on their flange, or lie on it the other way round."""
     for name, sensor in cell.force_sensors.items():
         axis = pose_from_xyzabc(sensor.flange_T_sensor).rotation.as_matrix()[:, 2]
         tilted_deg = float(np.degrees(np.arccos(min(1.0, abs(float(axis[2]))))))
@@ -70,6 +70,15 @@ def mounted_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
             said = (
                 f"tilted by {tilted_deg:.0f} deg against the flange: a disc that is bolted on lies "
                 "flat; a weight would be read as a force across"
+            )
+            written = str(list(sensor.flange_T_sensor))
+            yield ConfigIssue(f"force_sensors.{name}.flange_T_sensor", written, said)
+        if axis[2] < 0.0:
+            said = (
+                "its z points back at the arm. If that is wrong, all forces along the tool have "
+                "the other sign: a press is felt as a pull, and no touch is. Right if the sensor "
+                "is bolted on the other way round; push the tool towards the flange, and "
+                "`cellctl check --connect` must show less along z"
             )
             written = str(list(sensor.flange_T_sensor))
             yield ConfigIssue(f"force_sensors.{name}.flange_T_sensor", written, said)

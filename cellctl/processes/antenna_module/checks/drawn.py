@@ -1,7 +1,7 @@
 """Holds limits of a recipe against its drawings, and the drawings against each other."""
 
 from collections.abc import Iterator
-from math import atan2, degrees
+from math import atan2, degrees, isclose
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +68,29 @@ def holding_bounds(recipe: AntennaRecipe, key: str, socket: Connector) -> Iterat
         "no more, and a pull beyond it draws good modules out"
     )
     yield Bound(f"{key}.insertion.pull_n", insertion.pull_n, why, most=socket.force_n[0])
+
+
+def capture_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
+    """An offset at which no pin finds its hole by its funnel, and two drawings that say two."""
+    drawings = read_drawings(recipe, folder)
+    plug, socket = drawings.plug, drawings.socket
+    found_mm = (socket.diameter_m / 2 + socket.funnel_m - plug.diameter_m / 2 + plug.chamfer_m) / MM
+    capture_mm = socket.capture_m / MM
+    if capture_mm > found_mm:
+        said = (
+            f"a pin of {plug.diameter_m / MM:g} mm with its chamfer of {plug.chamfer_m / MM:g} mm "
+            f"meets the funnel of funnel_mm = {socket.funnel_m / MM:g} over a bore of "
+            f"{socket.diameter_m / MM:g} mm up to {found_mm:.2g} mm beside its middle, if that "
+            "narrows by 45 deg. Farther off it stands on the face, and how far off the plug may "
+            "be, and what it may press with before the springs, follows from capture_mm"
+        )
+        yield ConfigIssue(f"{key}.socket", f"capture_mm = {capture_mm:g} in it", said)
+    if not isclose(plug.capture_m, socket.capture_m):
+        said = (
+            f"the drawing of the socket has capture_mm = {capture_mm:g}, and that counts; both say "
+            "how far off one plug still finds one socket"
+        )
+        yield ConfigIssue(f"{key}.plug", f"capture_mm = {plug.capture_m / MM:g} in it", said)
 
 
 def holding_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:

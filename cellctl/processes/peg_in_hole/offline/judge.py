@@ -15,6 +15,7 @@ from cellctl.processes.peg_in_hole.offline.task_file import (
     read_part,
     recorded_evidence,
 )
+from cellctl.processes.peg_in_hole.plausible.fit import wide_clearance
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, judge_peg
 
@@ -29,9 +30,16 @@ def judge_by_task(curve: Path, task: Path) -> JudgedInsertion:
         require_own_curve(evidence, recorded_evidence(task))
     except PegCurveInvalid as fault:
         raise PegCurveInvalid(f"{curve}: {fault.detail}") from fault
+    wide = wide_clearance(part.fit)
+    said = () if wide is None else (f"fit.clearance_mm = {part.fit.clearance_mm:g} is {wide}.",)
     record = _plain({"evidence": evidence.to_record(), "judgement": judgement.to_record()})
     return JudgedInsertion(
-        judgement.verdict.value, judgement.inserted, judgement.checks, judgement.fault, record
+        judgement.verdict.value,
+        judgement.inserted,
+        judgement.checks,
+        judgement.fault,
+        record | {"left_open": list(said)},
+        said,
     )
 
 

@@ -2,7 +2,7 @@
 
 import json
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -11,11 +11,15 @@ from pydantic import Field, ValidationError
 
 from cellctl.calibration.input_file import error_words
 from cellctl.config.base import Section
+from cellctl.config.checks.bounds.bound import bound_issues
+from cellctl.config.issue import ConfigIssue
 from cellctl.errors.config import FileInvalid
 from cellctl.files.hand_written import read_hand_written
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.plan.cycle_plan import fit_geometry, seat_limits
 from cellctl.processes.peg_in_hole.plan.task import FitGeometry
+from cellctl.processes.peg_in_hole.plausible.fit import drawing_bounds
+from cellctl.processes.peg_in_hole.plausible.seat import seat_bounds, seat_order_issues
 from cellctl.processes.peg_in_hole.recipe import Fit, Seat
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.settings import STIFFNESS_N_MM
@@ -121,9 +125,19 @@ def parse_part(text: str, *, as_json: bool = False) -> JudgedPart:
             raise FileInvalid(text)
         content = found
     try:
-        return JudgedPart.model_validate(content)
+        part = JudgedPart.model_validate(content)
     except ValidationError as error:
         raise FileInvalid(error_words(error)) from error
+    if contradicted := [str(issue) for issue in _contradictions(part)]:
+        raise FileInvalid("; ".join(contradicted))
+    return part
+
+
+def _contradictions(part: JudgedPart) -> Iterator[ConfigIssue]:
+    """What `cellctl check` refuses in a recipe of the same figures."""
+    yield from seat_order_issues(part.seat, "seat")
+    yield from bound_issues(drawing_bounds(part.fit, "fit"))
+    yield from bound_issues(seat_bounds(part.seat, part.cell.force_sigma_n, "seat"))
 
 
 def recorded_evidence(path: Path) -> Mapping[str, Any] | None:

@@ -15,14 +15,30 @@ LEAST_FRICTION = 0.05
 """Of a dry pair; polytetrafluoroethylene on steel, the most slippery one in use, has about 0.04."""
 _LEAST_KEY_PLAY_MM = 0.01
 """To either side of a key: half the width of the closest fit in which one slides (H7/g6)."""
+_WIDE_MM, _WIDE_SHARE = 0.1, 0.02
+"""Radial clearance of the widest usual fits: so much, and so much of the radius."""
 _PLACES_SHARE = 0.8
 """Of the radius that holds 99 of 100 places, the one that holds 95: 2.45 over 3.03 standard
 deviations of two equal axes."""
 
 
 def fit_bounds(recipe: PegRecipe, key: str) -> Iterator[Bound]:
-    """Chamfers, keys and outer face that this part cannot have, and touches that meet the hole."""
-    fit, where = recipe.fit, f"{key}.fit"
+    """Figures of a drawing that contradict each other, and touches that meet the hole."""
+    where = f"{key}.fit"
+    yield from drawing_bounds(recipe.fit, where)
+    if recipe.fit.contacts is not None:
+        why = "insertion_n: contacts that take more are never passed"
+        most_n, name = recipe.forces.insertion_n, f"{where}.contacts.most_n"
+        yield Bound(name, recipe.fit.contacts.most_n, why, most=most_n)
+    yield _touches(recipe, key)
+    yield from _proud(recipe, key)
+
+
+def drawing_bounds(fit: Fit, where: str) -> Iterator[Bound]:
+    """Clearance, chamfers, keys, contacts and outer face that this part cannot have; ``where`` is
+    the key of the drawing."""
+    why = "half of peg_radius_mm: so wide a bore is that of another peg, or peg_radius_mm is wrong"
+    yield Bound(f"{where}.clearance_mm", fit.clearance_mm, why, most=fit.peg_radius_mm / 2)
     why = "half of peg_radius_mm, or the peg would have no front that stands on a face"
     yield Bound(f"{where}.peg_chamfer_mm", fit.peg_chamfer_mm, why, most=fit.peg_radius_mm / 2)
     why = "peg_radius_mm: no hole is chamfered by more than the peg is wide"
@@ -48,21 +64,27 @@ def fit_bounds(recipe: PegRecipe, key: str) -> Iterator[Bound]:
         )
         least_deg = degrees(_LEAST_KEY_PLAY_MM / fit.peg_radius_mm)
         yield Bound(f"{where}.keys.window_deg", fit.keys.window_deg, why, least=least_deg)
-    yield from _contacts(recipe, where, entry_mm)
-    yield _touches(recipe, key)
-    yield from _proud(recipe, key)
+    yield from _contacts(fit, where, entry_mm)
 
 
-def _contacts(recipe: PegRecipe, where: str, entry_mm: float) -> Iterator[Bound]:
-    contacts = recipe.fit.contacts
+def wide_clearance(fit: Fit) -> str | None:
+    """What is to be said of a clearance that is wider than the usual fits."""
+    usual_mm = _WIDE_MM + _WIDE_SHARE * fit.peg_radius_mm
+    if fit.clearance_mm <= usual_mm:
+        return None
+    return (
+        f"wider than the fits of parts of this size, up to {usual_mm:.2g} mm; right if the "
+        "drawing has it so: a hole that is too wide is found by what exceeds it"
+    )
+
+
+def _contacts(fit: Fit, where: str, entry_mm: float) -> Iterator[Bound]:
+    contacts = fit.contacts
     if contacts is None:
         return
-    why = f"contacts begin after the peg has entered, before depth_mm = {recipe.fit.depth_mm:g}"
-    depth_mm, most_mm = contacts.depth_mm, recipe.fit.depth_mm
+    why = f"contacts begin after the peg has entered, before depth_mm = {fit.depth_mm:g}"
+    depth_mm, most_mm = contacts.depth_mm, fit.depth_mm
     yield Bound(f"{where}.contacts.depth_mm", depth_mm, why, least=entry_mm, most=most_mm)
-    why = "insertion_n: contacts that take more are never passed"
-    most_n = recipe.forces.insertion_n
-    yield Bound(f"{where}.contacts.most_n", contacts.most_n, why, most=most_n)
     told_mm = 2 * ZONE_M / MM + HELD_MM
     why = (
         f"all contacts rub after they have begun (depth_mm = {depth_mm:g}), and {told_mm:g} mm "

@@ -8,15 +8,20 @@ from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.checks.sensor_places import sensor_bounds, straight_mm
 from cellctl.config.driver_settings import measuring_range
 from cellctl.geometry.pose import MM
+from cellctl.processes.peg_in_hole.cycle import greatest_before_n
+from cellctl.processes.peg_in_hole.plan.cycle_plan import search_task
+from cellctl.processes.peg_in_hole.plausible.seat import SIGMAS, seat_bounds
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import FORCE
 from cellctl.processes.peg_in_hole.settings import PegSettings
 from cellctl.processes.peg_in_hole.verdict.judgement import MOST_OF_GRIP
+from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
 
 _PUSHED_WITH_N = 2.0
 """Presses the peg while it is pushed to the sides (verdict/lateral.py): no search presses less."""
-_SIGMAS = 20.0
-"""A force that is compared with thresholds of a few standard deviations lies well above them."""
+_MOST_TO_THE_SIDE = 0.9
+"""Of insertion_n, what a push of the verdict may take: by half of what is left it may grow until
+the arm has answered, and with nothing left it never moves."""
 _MOST_OVER_INSERTION = 3.0
 _MOST_LEVERS = 3.0
 """Of what the greatest force makes on the whole length of the part."""
@@ -34,11 +39,19 @@ def force_bounds(
 
 def _contact(recipe: PegRecipe, settings: PegSettings, where: str) -> Iterator[Bound]:
     forces = recipe.forces
-    least_n = max(_PUSHED_WITH_N, _SIGMAS * settings.force_sigma_n)
-    why = f"what a peg is pressed with while it is pushed aside, and {_SIGMAS:g} force_sigma_n"
+    least_n = max(_PUSHED_WITH_N, SIGMAS * settings.force_sigma_n)
+    why = f"what a peg is pressed with while it is pushed aside, and {SIGMAS:g} force_sigma_n"
     yield Bound(f"{where}.search_n", forces.search_n, why, least=least_n)
     why = "half of insertion_n: a search that presses like the insertion cannot be told from it"
     yield Bound(f"{where}.search_n", forces.search_n, why, most=forces.insertion_n / 2.0)
+    push_n = push_force_n(search_task(recipe, settings).cell)
+    why = (
+        f"the verdict pushes sideways with {push_n:.3g} N, more than friction on a chamfer holds "
+        f"(friction = {recipe.fit.friction:g}), and that is at most {_MOST_TO_THE_SIDE:g} times "
+        "insertion_n"
+    )
+    least_n = push_n / _MOST_TO_THE_SIDE
+    yield Bound(f"{where}.insertion_n", forces.insertion_n, why, least=least_n)
     why = f"{_MOST_OVER_INSERTION:g} times insertion_n, where a good insertion ends"
     most_n = _MOST_OVER_INSERTION * forces.insertion_n
     yield Bound(f"{where}.fault_n", forces.fault_n, why, most=most_n)
@@ -59,14 +72,8 @@ def _seat(recipe: PegRecipe, settings: PegSettings, key: str) -> Iterator[Bound]
     forces, seat = recipe.forces, recipe.seat
     why = "insertion_n, at which the feed ends: a higher limit would judge nothing"
     yield Bound(f"{key}.seat.most_n", seat.most_n, why, most=forces.insertion_n)
-    least_n = _SIGMAS * settings.force_sigma_n
-    why = f"{_SIGMAS:g} force_sigma_n: a seat that is only noise is none"
-    yield Bound(f"{key}.seat.least_n", seat.least_n, why, least=least_n)
+    yield from seat_bounds(seat, settings.force_sigma_n, f"{key}.seat")
     if seat.pull_n is not None:
-        why = "pull_n, which the seated part must hold, so going in takes more"
-        yield Bound(f"{key}.seat.least_n", seat.least_n, why, least=seat.pull_n)
-        why = f"{_SIGMAS:g} force_sigma_n: a pull of less proves nothing"
-        yield Bound(f"{key}.seat.pull_n", seat.pull_n, why, least=least_n)
         why = "pull_n, which the part holds: with less it is never drawn out again"
         yield Bound(f"{key}.forces.withdrawal_n", forces.withdrawal_n, why, least=seat.pull_n)
     if recipe.fit.contacts is not None:
@@ -77,6 +84,12 @@ def _seat(recipe: PegRecipe, settings: PegSettings, key: str) -> Iterator[Bound]
         least_n = forces.insertion_n / MOST_OF_GRIP
         why = f"insertion_n over {MOST_OF_GRIP:g}, or no part could be told from one that slipped"
         yield Bound(f"{key}.seat.grip_n", seat.grip_n, why, least=least_n)
+        before_n = greatest_before_n(search_task(recipe, settings))
+        why = (
+            f"{before_n:g} N, up to which the guard lets a search press, over {MOST_OF_GRIP:g}: "
+            "the part may have slipped then, and none would be called inserted"
+        )
+        yield Bound(f"{key}.seat.grip_n", seat.grip_n, why, least=before_n / MOST_OF_GRIP)
         why = f"{MOST_OF_GRIP:g} times grip_n: with more the gripper slips off the part"
         most_n = MOST_OF_GRIP * seat.grip_n
         yield Bound(f"{key}.forces.withdrawal_n", forces.withdrawal_n, why, most=most_n)

@@ -10,14 +10,17 @@ from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.checks.over_places import unmeasured_height
 from cellctl.config.checks.sensor_places import straight_mm
 from cellctl.config.issue import ConfigIssue
+from cellctl.processes.peg_in_hole.plan.cycle_plan import search_task
+from cellctl.processes.peg_in_hole.plausible.fit import wide_clearance
 from cellctl.processes.peg_in_hole.plausible.loop import soft_arm
 from cellctl.processes.peg_in_hole.plausible.stream import over_hole
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
 from cellctl.processes.peg_in_hole.roles import ARM, FORCE
 from cellctl.processes.peg_in_hole.settings import PegSettings
+from cellctl.processes.peg_in_hole.verdict.lateral import push_force_n
 
-_WIDE_MM, _WIDE_SHARE = 0.1, 0.02
-"""Radial clearance of the widest usual fits: so much, and so much of the radius."""
+_ROUGH = 0.5
+"""Friction of clean, dry metal; parts that are plugged are smoother, or one is a plastic."""
 _SLENDER_MM = 25.0
 """Diameter of a bar that is slenderer than grippers are; fingers and their bodies are wider."""
 _ALUMINIUM_KG_MM3, _STEEL_KG_MM3 = 2.7e-6, 7.85e-6
@@ -29,13 +32,15 @@ def recipe_remarks(
     """Called with a file that is good."""
     settings = cast(PegSettings, cell.processes[recipe.process])
     fit = recipe.fit
-    usual_mm = _WIDE_MM + _WIDE_SHARE * fit.peg_radius_mm
-    if fit.clearance_mm > usual_mm:
-        said = (
-            f"wider than the fits of parts of this size, up to {usual_mm:.2g} mm; right if the "
-            "drawing has it so: a hole that is too wide is found by what exceeds it"
-        )
+    if (said := wide_clearance(fit)) is not None:
         yield ConfigIssue(f"{key}.fit.clearance_mm", f"{fit.clearance_mm:g}", said)
+    if fit.friction > _ROUGH:
+        push_n = push_force_n(search_task(recipe, settings).cell)
+        said = (
+            "more than parts have that are plugged; right if it was measured: the verdict pushes "
+            f"the part sideways with {push_n:.0f} N, since less could be friction on a chamfer"
+        )
+        yield ConfigIssue(f"{key}.fit.friction", f"{fit.friction:g}", said)
     if fit.keys is not None and fit.keys.window_deg >= fit.keys.uncertainty_deg:
         said = (
             f"keys that enter within {fit.keys.window_deg:g} deg need no turn when the plug "
@@ -78,3 +83,14 @@ def _light(cell: CellConfig, recipe: PegRecipe, key: str) -> Iterator[ConfigIssu
             "the search tilts the part: weigh it; right if the tool is so light"
         )
         yield ConfigIssue(f"{key}.load.mass_kg", f"{recipe.load.mass_kg:g}", said)
+
+
+def not_yet_checked(recipe: PegRecipe) -> Iterator[str]:
+    """How deep the touched panel lies below the face of a raised plug: a rule alone shows it."""
+    deep_mm = recipe.base_T_hole.datum_depth_mm
+    if deep_mm > 0.0:
+        yield (
+            f"recipe {recipe.id}: base_T_hole.datum_depth_mm = {deep_mm:g}. Nothing in the file "
+            "says how far the plug stands proud of the panel that is touched round it. Measure "
+            "it: by as much as it is wrong the plug's face is met too soon or too late"
+        )

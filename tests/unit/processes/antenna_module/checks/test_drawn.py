@@ -6,6 +6,7 @@ from shutil import copytree
 import pytest
 
 from cellctl.config import problems_before_commissioning
+from cellctl.config.commissioning import examine_before_commissioning
 from cellctl.config.issue import ConfigIssue
 
 CONFIG = Path(__file__).parents[5] / "config"
@@ -50,3 +51,27 @@ def test_a_plug_has_the_force_of_its_socket(tmp_path: Path, name: str) -> None:
 
 def test_forces_below_every_bound_pass(tmp_path: Path) -> None:
     assert found(tmp_path, PINS, HOLES, force_n="[5.0, 60.0]") == []
+
+
+@pytest.mark.parametrize(
+    ("files", "mm", "said"),
+    [
+        ((PINS, HOLES), 0.5, {"recipes.0.socket": "up to 0.38 mm beside its middle"}),
+        ((HOLES,), 0.3, {"recipes.0.plug": "the socket has capture_mm = 0.3"}),
+        ((PINS, HOLES), 0.3, {}),
+    ],
+)
+def test_an_offset_that_no_funnel_takes_is_worth_a_second_look(
+    tmp_path: Path, files: tuple[str, ...], mm: float, said: dict[str, str]
+) -> None:
+    copytree(CONFIG / "connectors", tmp_path / "connectors")
+    copytree(CONFIG / "antenna-calibration", tmp_path / "antenna-calibration")
+    for name in files:
+        path = tmp_path / "connectors" / name
+        path.write_text(path.read_text().replace("capture_mm = 0.2", f"capture_mm = {mm}"))
+    (tmp_path / "antenna.toml").write_text((CONFIG / "antenna.toml").read_text())
+    examined = examine_before_commissioning(tmp_path / "antenna.toml")
+    assert examined.errors == ()
+    remarks = {one.key: one.allowed for one in examined.remarks}
+    assert remarks.keys() == said.keys()
+    assert all(words in remarks[key] for key, words in said.items())
