@@ -92,11 +92,15 @@ class ForceLimitExceeded(ForceError):
 
     number = 512
     text = "Force limit exceeded"
-    cause = "Contact where none was expected, a wrong payload, or a robot that stopped too late."
+    cause = (
+        "Contact where none was expected, a wrong payload, a robot that stopped too late, or a "
+        "sensor whose axes are not those of the cell file, so that a touch is not felt as one."
+    )
     remedy = (
         "Look at the force curve in the record; inspect the parts before the next attempt. If the "
-        "move touched nothing: compare `free_force_n` of the sensor with the force that its load "
-        "makes as a move starts (docs/guard.md)."
+        "force has grown with the wrong sign: push the tool by hand as `cellctl check` says, and "
+        "set right `flange_T_sensor`. If the move touched nothing: compare `free_force_n` of the "
+        "sensor with the force that its load makes as a move starts (docs/guard.md)."
     )
 
 

@@ -80,8 +80,14 @@ class FaceAbsent(ByTouchError):
 
     number = 549
     text = "The face of the hole was not met"
-    cause = "The part is missing or elsewhere, or its height is more uncertain than stated."
-    remedy = "Look at the part; compare its place with what vision reported."
+    cause = (
+        "The part is missing or elsewhere, its height is more uncertain than stated, or the axes "
+        "of the force sensor are not those of the cell file."
+    )
+    remedy = (
+        "Look at the part; compare its place with what vision reported. If the part was pressed: "
+        "push the tool by hand as `cellctl check` says, and set right `flange_T_sensor`."
+    )
 
 
 class FaceUneven(ByTouchError):

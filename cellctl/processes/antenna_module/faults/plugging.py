@@ -239,13 +239,15 @@ class SocketUnsound(PluggingError):
 
 
 class ModuleInQuarantine(PluggingError):
-    """A module of this serial number has met a force fault in an earlier run."""
+    """A module of this serial number has met a force fault in an earlier run, or was left in its
+    insertion."""
 
     number = 486
     text = "This module belongs into quarantine"
     cause = (
-        "An earlier run of this serial number, in the detail, ended with a force fault: its pins "
-        "may be bent, and a second insertion could damage the socket, too."
+        "An earlier run of this serial number, in the detail, ended with a force fault, or within "
+        "its insertion before the force was judged, as by an Abort: its pins may be bent, and a "
+        "second insertion could damage the socket, too."
     )
     remedy = (
         "Keep the module in quarantine. One that was inspected and repaired begins anew with a "
