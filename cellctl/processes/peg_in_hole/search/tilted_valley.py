@@ -25,10 +25,16 @@ _ACROSS = np.array([0.0, 1.0])
 _FALLEN_DIPS = 1.4
 """On the edge of a hole a tilted peg rests deeper by r θ c / e than far from it, at a distance e
 from its axis: with this dip it stands within 2.5 c."""
+_DOWNHILL_SPEEDS = 4.0
+"""Multiple of the speed of a touch: the arm does not press while the face falls away."""
+_ACROSS_SPEEDS = 1.5
+"""Up the flanks, where the arm presses as it climbs."""
 _BACK_SPEEDS = 2.0
 """Near the wall the peg may stand in the mouth, and is not to be torn out."""
-_SIDE_SHARE = 0.7
+_SIDE_SHARE = 0.6
 """Flanks are steep, and press and side force add up."""
+_RESTS_N, _RESTS_SIGMAS = 0.8, 4.0
+"""A peg that nothing pushes sideways with more has come to rest; or with more than the noise."""
 _LET_GO = 12
 """Times that a peg may come to lean on a flank on its way along the valley. Let go, friction keeps
 it beside the middle by as much as press and slope allow, so that it soon leans there again."""
@@ -112,7 +118,7 @@ class _Valley:
         for sign in (1.0, -1.0):
             end_m = at_m + sign * self._reach_m * _ACROSS
             beyond = _SideReached(self, at_m, sign, half_m)
-            motion = await self._slide(end_m, 2 * self._speed, beyond)
+            motion = await self._slide(end_m, _ACROSS_SPEEDS * self._speed, beyond)
             if motion.ended is Ended.FORCE:
                 # A stiff arm cannot climb a flank that is so steep: the peg finds the middle.
                 return await self._let_go()
@@ -152,13 +158,18 @@ class _Valley:
 
     async def _let_go(self) -> Array:
         """Where the peg comes to rest (2,) when nothing holds it sideways."""
-        rests = await self._probe.let_go(lambda sample: self.fell_in(self.dip_m(sample)))
+        rests = await self._probe.let_go(self._rests)
         self._here_m = rests.task_position_tip_m[:2].copy()
         self._fallen = self.fell_in(self.dip_m(rests))
         return self._here_m
 
-    async def _step_to(self, point_m: Array, speeds: float = 4.0) -> Array:
-        """Downhill, hence faster: the arm does not press while the face falls away."""
+    def _rests(self, sample: ContactSample) -> bool:
+        side_n = float(np.hypot(*sample.force_n[:2]))
+        least_n = max(_RESTS_N, _RESTS_SIGMAS * self._probe.task.cell.force_sigma_n)
+        return side_n < least_n or self.fell_in(self.dip_m(sample))
+
+    async def _step_to(self, point_m: Array, speeds: float = _DOWNHILL_SPEEDS) -> Array:
+        """Downhill, hence faster."""
         await self._slide(point_m, speeds * self._speed, lambda _sample: False)
         return point_m
 
