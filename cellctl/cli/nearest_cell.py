@@ -13,7 +13,7 @@ from cellctl.errors.records import StoreUnavailable
 SERVICE_SOCKET = Path("/run/cellctl/cellctl.sock")
 SERVICE_STORE = Path("/var/lib/cellctl")
 SERVICE_CELL = Path("/etc/cellctl/cell.toml")
-_STARTED_HERE = ("runs", "runs/*/store")
+_STARTED_HERE = ("runs", "runs/*", "runs/*/store")
 """Where `cellctl run` with the shipped cell files and `cellctl demo` keep store and socket."""
 
 _PROBE_S = 1.0
@@ -33,9 +33,17 @@ def nearest_store() -> Path:
     """The folder of the run store; raises ``StoreUnavailable`` where there is none."""
     file = _nearest(SERVICE_STORE, "store.sqlite")
     if file is None:
-        places = ", ".join((str(SERVICE_STORE), *_STARTED_HERE))
-        raise StoreUnavailable(f"none in {places}; --data-dir names another folder")
+        raise StoreUnavailable(f"none in {_places(SERVICE_STORE)}; --data-dir names another folder")
     return file.parent
+
+
+def socket_places() -> str:
+    """Where ``nearest_socket`` looks, in words."""
+    return f"{_places(SERVICE_SOCKET.parent)}; a daemon has its socket in its data_dir"
+
+
+def _places(service: Path) -> str:
+    return f"{service} and, below {Path.cwd()}, {', '.join(_STARTED_HERE)}"
 
 
 def nearest_socket() -> Path:

@@ -88,7 +88,7 @@ class Demo(ABC):
     procedures: ClassVar[Sequence[Procedure]] = ()
     """All calibrations of the cell in their order, for ``--calibrate``."""
     steps: ClassVar[Mapping[int, str]] = {}
-    """Labels of the steps by number, where they differ from those that the line PLC knows."""
+    """Labels of the steps and procedures by number, which is all that a line PLC reads."""
     telling: ClassVar[Sequence[str]] = ()
     """Keys of a message whose change is worth a line, besides state, step and alarms. ``doing``:
     what the daemon has said last."""

@@ -10,7 +10,7 @@ from rich.text import Text
 
 from fakes.demo.demo import Demo
 
-_TELLING = ("state", "step", "iteration", "alarms")
+_TELLING = ("state", "step_number", "iteration", "alarms")
 """A change of one of these is worth a line."""
 
 
@@ -46,7 +46,7 @@ class LiveView:
         if self._begun_s is None:
             self._begun_s = message["time"]
         # The register shows no step between two of them; a line for that would only be noise.
-        pause = message["state"] == "EXECUTE" and not message["step"]
+        pause = message["state"] == "EXECUTE" and not message["step_number"]
         if any(self._last.get(key) != message.get(key) for key in self._telling) and not pause:
             time_s = message["time"] - self._begun_s
             self._console.print(f"{time_s:6.1f} s  {self._news(message)}", markup=False)
@@ -62,10 +62,11 @@ class LiveView:
         return ", ".join(parts)
 
     def _where(self, now: dict[str, Any]) -> str:
-        return self._step(now) if now["state"] == "EXECUTE" and now["step"] else _state(now)
+        return self._step(now) if now["state"] == "EXECUTE" and now["step_number"] else _state(now)
 
     def _step(self, now: dict[str, Any]) -> str:
-        return self._demo.steps.get(now.get("step_number", 0), str(now["step"]))
+        number = now.get("step_number", 0)
+        return self._demo.steps.get(number, str(number) if number else "")
 
     def _panel(self, now: dict[str, Any]) -> Table:
         table = Table(show_header=False, box=None, padding=(0, 2))

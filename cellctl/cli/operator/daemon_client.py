@@ -20,7 +20,7 @@ from cellctl.api.local_socket.messages import (
     to_line,
 )
 from cellctl.api.local_socket.report import StatusReport
-from cellctl.cli.nearest_cell import nearest_socket
+from cellctl.cli.nearest_cell import nearest_socket, socket_places
 from cellctl.clock import Monotonic, now_s
 from cellctl.errors.local import (
     CommandMissedItsGoal,
@@ -41,6 +41,7 @@ class DaemonClient:
 
     def __init__(self, path: Path | None, *, clock: Monotonic = now_s) -> None:
         self._path = path or nearest_socket()
+        self._named = path is not None
         self._now_s = clock
 
     def status(self) -> StatusReport:
@@ -96,7 +97,9 @@ class DaemonClient:
                 with connection.makefile("rb") as lines:
                     line = lines.readline(ANSWER_LIMIT)
         except OSError as error:
-            raise DaemonNotReached(f"{self._path}: {error.strerror or error}") from error
+            searched = "" if self._named else f"; searched {socket_places()}"
+            facts = f"{self._path}: {error.strerror or error}{searched}"
+            raise DaemonNotReached(facts) from error
         # A line without its end was cut off: the daemon ended, or the answer is longer than an
         # answer may be.
         if not line.endswith(b"\n"):

@@ -44,6 +44,22 @@ class DeckToFrameDemo(Demo):
     scenario: ClassVar[Path] = CONFIG / "deck.scenario.toml"
     mate_serial: ClassVar[str] = "FRAME-{seed:04d}"
     procedures: ClassVar[Sequence[Procedure]] = PROCEDURES
+    steps: ClassVar[Mapping[int, str]] = {
+        10: "measure frame",
+        20: "measure deck",
+        30: "pre-assembly",
+        40: "correct pose",
+        50: "mate",
+        60: "verify",
+        101: "calibrate head 1",
+        102: "calibrate head 2",
+        103: "calibrate base frame",
+        104: "calibrate board 1",
+        105: "calibrate board 2",
+        106: "identify payload",
+        107: "measure stop latency",
+        108: "measure contact stiffness",
+    }
 
     def measure(self, evidence: Evidence) -> Sequence[Sequence[str]]:
         """Plug gauges in the pin holes of a good part."""

@@ -47,23 +47,6 @@ STATUS_BITS = (
     "hold_requested",
     "stop_not_confirmed",
 )
-STEPS = {
-    0: "",
-    10: "measure frame",
-    20: "measure deck",
-    30: "pre-assembly",
-    40: "correct pose",
-    50: "mate",
-    60: "verify",
-    101: "calibrate head 1",
-    102: "calibrate head 2",
-    103: "calibrate base frame",
-    104: "calibrate board 1",
-    105: "calibrate board 2",
-    106: "identify payload",
-    107: "measure stop latency",
-    108: "measure contact stiffness",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +57,8 @@ class Report:
     mode: int
     state_requested: str
     status: tuple[str, ...]
-    step: str
     step_number: int
+    """Which step it is depends on the process of the cell."""
     iteration: int
     ack_seq: int
     done_seq: int
@@ -119,7 +102,6 @@ def read_report(block: Sequence[int]) -> Report:
         mode=block[3],
         state_requested=STATES[block[4]],
         status=tuple(name for bit, name in enumerate(STATUS_BITS) if block[5] >> bit & 1),
-        step=STEPS.get(block[6], str(block[6])),
         step_number=block[6],
         iteration=block[74],
         ack_seq=block[7],

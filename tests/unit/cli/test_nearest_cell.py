@@ -9,7 +9,9 @@ from typer.testing import CliRunner
 
 from cellctl.cli import nearest_cell
 from cellctl.cli.nearest_cell import nearest_socket, nearest_store
+from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.records.runs import app
+from cellctl.errors.local import DaemonNotReached
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records import RunStore
 from tests.unit.records.sample import good_run
@@ -53,8 +55,23 @@ def test_a_daemon_that_was_started_here_is_found(here: Path) -> None:
     assert nearest_socket() == left
 
 
+def test_a_shipped_cell_file_that_was_started_here_is_found(here: Path) -> None:
+    """Its data_dir is the store itself, as ``runs/small``."""
+    store = left_by(Path("runs/small"), "store.sqlite", age_s=0.0)
+    (store.parent / "cellctl.sock").touch()
+    assert nearest_store() == store.parent
+    assert nearest_socket() == store.parent / "cellctl.sock"
+
+
+def test_a_daemon_that_is_not_found_is_told_with_the_places(here: Path) -> None:
+    with pytest.raises(DaemonNotReached, match=r"runs/\*/store; a daemon has its socket in"):
+        DaemonClient(None).status()
+    with pytest.raises(DaemonNotReached, match=r"named.sock: No such file or directory$"):
+        DaemonClient(Path("named.sock")).status()
+
+
 def test_without_any_the_places_are_named(here: Path) -> None:
-    with pytest.raises(StoreUnavailable, match="--data-dir"):
+    with pytest.raises(StoreUnavailable, match=r"run.* runs/\*, .*--data-dir"):
         nearest_store()
     assert nearest_socket() == nearest_cell.SERVICE_SOCKET
 

@@ -127,7 +127,6 @@ def test_a_shipped_cell_comes_with_the_measured_loop(name: str) -> None:
 
 NOW: dict[str, Any] = {
     "state": "EXECUTE",
-    "step": "search and insert",
     "step_number": 30,
     "error_mm": [0.1, 0.0, -4.25],
     "force_z_n": -7.5,
@@ -154,5 +153,5 @@ def test_a_new_class_of_contact_is_worth_a_line() -> None:
 
 
 def test_before_any_contact_nothing_is_claimed() -> None:
-    empty = {"state": "EXECUTE", "step": "", "step_number": 0}
+    empty = {"state": "EXECUTE", "step_number": 0}
     assert set(PegInHoleDemo().rows(empty).values()) == {"-"}
