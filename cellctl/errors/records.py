@@ -247,8 +247,12 @@ class FleetRefused(FleetError):
 
     number = 832
     text = "Fleet database refuses access"
-    cause = "The cell was never added, the user is another one, or a right is missing."
-    remedy = "The database's administrator adds the cell or its user: `cellctl fleet add`."
+    cause = (
+        "No fleet was made there, the cell was never added, the user is another one, or a right "
+    )
+    cause += "right is missing."
+    remedy = "The database's owner first makes it that of a fleet with `cellctl fleet init`; its "
+    remedy += "administrator adds the cell or its user with `cellctl fleet add`."
 
 
 class FleetDiffers(FleetError):

@@ -32,6 +32,8 @@ class FleetTimeLimits:
 TIME_LIMITS = FleetTimeLimits()
 _REFUSED = ("28", "3D", "3F", "42")
 """Classes of SQLSTATE: login, database, schema, rights and missing tables."""
+_NO_TABLE, _REGISTRY = "42P01", "fleet.cells"
+"""The table that `cellctl fleet init` makes first."""
 _DIFFERS, _NOT_KEPT = "23", "22"
 
 
@@ -92,6 +94,8 @@ def fault_of(error: SQLAlchemyError) -> FleetError:
     reason = " ".join(str(error.orig).split())
     # A connection that broke, or that was never made, has no state of SQL.
     state = getattr(error.orig, "sqlstate", None) or ""
+    if state == _NO_TABLE and _REGISTRY in reason:
+        return FleetRefused(f"{reason}; `cellctl fleet init` was never run on it")
     if state.startswith(_REFUSED):
         return FleetRefused(reason)
     if state.startswith(_DIFFERS):

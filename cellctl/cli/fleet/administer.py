@@ -8,7 +8,7 @@ from cellctl.cli.fleet.store_option import PasswordFile, StoreUrl, opened_fleet
 
 
 def init(store: StoreUrl = "", password_file: PasswordFile = "") -> None:
-    """Make an empty database the one of a fleet; by its owner, who may create roles."""
+    """Make an empty database that of a fleet. Its owner does it, who may create roles."""
     from cellctl.fleet import layout
 
     with opened_fleet(store, password_file) as fleet:
@@ -22,7 +22,7 @@ def add(
     store: StoreUrl = "",
     password_file: PasswordFile = "",
 ) -> None:
-    """Take the records of a cell; its role may add to them and change nothing."""
+    """Take the records of a cell. Its role may add to them and change nothing."""
     from cellctl.fleet import layout
 
     with opened_fleet(store, password_file) as fleet:
@@ -31,7 +31,7 @@ def add(
 
 
 def migrate(store: StoreUrl = "", password_file: PasswordFile = "") -> None:
-    """Bring the tables of all cells to this version; before the cells are upgraded."""
+    """Bring all tables to this version, before cells are upgraded."""
     from cellctl.fleet import layout
 
     with opened_fleet(store, password_file) as fleet:

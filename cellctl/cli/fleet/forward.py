@@ -28,10 +28,10 @@ def forward(
     *,
     once: Annotated[bool, typer.Option(help="Deliver what there is, then end.")] = False,
 ) -> None:
-    """Deliver the cell's records to its fleet database until Ctrl-C; runs beside the daemon.
+    """Deliver a cell's records until Ctrl-C; runs beside the daemon.
 
-    A server that is away is asked again and again, at most a minute apart. With --once a failure is
-    an error.
+    They go to the database that its cell file names. A server that is away is asked again and
+    again, at most a minute apart. With --once a failure is an error.
     """
     from cellctl.fleet.cell_records import CellRecords
     from cellctl.fleet.delivery import Delivery

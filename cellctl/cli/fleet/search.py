@@ -31,13 +31,14 @@ if TYPE_CHECKING:
 
 CLOCKS_APART_S = 5.0
 """From here on a difference of clocks is told, as it disorders the runs of several cells."""
+_WHOLE = ("run", "serial", "started (UTC)")
 CellName = Annotated[str, typer.Argument(help="Name of the cell, as in its cell file.")]
 
 
 def cells(
     store: StoreUrl = "", password_file: PasswordFile = "", *, as_json: AsJson = False
 ) -> None:
-    """Which cells deliver, how far each has come, and whose clock is wrong."""
+    """Which cells deliver, how far each is, whose clock is wrong."""
     from cellctl.fleet import recall
 
     with opened_fleet(store, password_file) as fleet:
@@ -66,7 +67,7 @@ def runs(
     until: Until = None,
     as_json: AsJson = False,
 ) -> None:
-    """Find runs of all cells that fulfil every condition: the parts to recall."""
+    """Find runs of all cells by conditions: the parts to recall."""
     from cellctl.fleet import recall
 
     wanted = wanted_runs(
@@ -115,7 +116,7 @@ def verify(
     cell: Annotated[str, typer.Option(help="Only this cell.")] = "",
     head: Annotated[str, typer.Option(help="LENGTH:HASH, as printed on a report of --cell.")] = "",
 ) -> None:
-    """Check that the records are as the cells have sealed them; exit code 1 if not.
+    """Check that records are as sealed; exit code 1 if not.
 
     Somebody who computes a whole chain anew is found out only by a head that he does not have: with
     --cell and --head that of a report, or what `cellctl runs verify` prints at the cell.
@@ -138,9 +139,9 @@ def verify(
 
 
 def _cells(found: Sequence["FleetCell"]) -> Table:
-    table = Table(
-        "cell", "entries", "to come", "last delivery (UTC)", "clock", "software", box=None
-    )
+    table = Table(box=None, padding=(0, 1, 0, 0))
+    for name in ("cell", "entries", "to come", "last delivery (UTC)", "clock", "software"):
+        table.add_column(name, overflow="fold")
     for one in found:
         received = f"{one.received:%Y-%m-%d %H:%M:%S}" if one.received else "never"
         ahead_s = one.clock_ahead_s or 0.0
@@ -151,8 +152,11 @@ def _cells(found: Sequence["FleetCell"]) -> Table:
 
 
 def _runs(found: Sequence["FoundRun"]) -> Table:
-    table = Table("cell", "run", "serial", "recipe", "mode", "started (UTC)", "duration", "result")
-    table.box = None
+    table = Table(box=None, padding=(0, 1, 0, 0))
+    for name in ("cell", "run", "serial", "recipe", "mode", "started (UTC)", "duration", "result"):
+        # Folded and not cut: names are what the next command is given. A serial number that is
+        # broken is read as another one.
+        table.add_column(name, no_wrap=name in _WHOLE, overflow="fold")
     for one in found:
         row = run_row(one.run.head, spoilt=one.run.spoilt, wide=False)
         table.add_row(one.cell, *row)

@@ -31,7 +31,7 @@ PasswordFile = Annotated[
 def opened_fleet(store: str, password_file: str) -> "closing[FleetDatabase]":
     """The database; raises ``FleetNotNamed``, ``FleetNotInstalled``."""
     if not store:
-        raise FleetNotNamed("--store is missing")
+        raise FleetNotNamed("neither --store nor CELLCTL_FLEET is given")
     # Loaded here: `cellctl fleet --help` does without the database layer.
     from cellctl.fleet.address import address
     from cellctl.fleet.database import FleetDatabase

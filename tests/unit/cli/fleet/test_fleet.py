@@ -1,6 +1,7 @@
 """`cellctl fleet` as its administrator, a cell and quality assurance use it."""
 
 import json
+import os
 import re
 import subprocess
 import sys
@@ -101,6 +102,32 @@ def test_cells_show_and_verify(url: str, fleet: Fleet) -> None:
     assert "there are: north cell, süd: 2" in str(unknown.exception)
 
 
+def test_nothing_that_is_typed_next_is_cut_at_80_columns(url: str, fleet: Fleet) -> None:
+    narrow = CliRunner(env={"COLUMNS": "80", "NO_COLOR": "1", "CELLCTL_FLEET": url})
+    listed = narrow.invoke(app, ["runs"]).stdout
+    assert "…" not in listed
+    assert "SAT-0042%" in listed
+    assert max(map(len, listed.splitlines())) <= 80
+    assert "…" not in narrow.invoke(app, ["cells"]).stdout
+
+
+def test_the_help_is_whole_at_80_columns() -> None:
+    words = [sys.executable, "-m", "cellctl", "fleet", "--help"]
+    environment = os.environ | {"COLUMNS": "80"}
+    told = subprocess.run(words, capture_output=True, text=True, check=True, env=environment).stdout
+    _, _, commands = told.partition("Commands:")
+    assert "verify" in commands
+    assert "..." not in commands
+
+
+def test_before_init_the_remedy_is_init(fleet: Fleet) -> None:
+    fleet.server.execute(f"CREATE DATABASE {fleet.database}_bare")
+    cells = run("cells", url=fleet.server.url(OWNER, f"{fleet.database}_bare"))
+    assert isinstance(cells.exception, FleetRefused)
+    assert "`cellctl fleet init` was never run on it" in str(cells.exception)
+    assert "cellctl fleet init" in cells.exception.remedy
+
+
 def test_from_an_empty_database_to_the_first_delivery(
     fleet: Fleet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -133,7 +160,7 @@ def test_from_an_empty_database_to_the_first_delivery(
 @pytest.mark.parametrize(
     ("url", "said"),
     [
-        ("", "--store is missing"),
+        ("", "neither --store nor CELLCTL_FLEET is given"),
         ("postgresql://me:secret@host/db", "a password does not belong here"),
         ("postgresql://me@host/db?password=secret", "a password does not belong here"),
         ("mysql://me@host/db", "it reads postgresql://"),
