@@ -14,7 +14,7 @@ from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.latch import CommandLatch
 from cellctl.api.modbus.pdu import Responder
 from cellctl.api.modbus.register_blocks import RegisterFile
-from cellctl.api.modbus.register_map import HOLDING, INPUT, Item
+from cellctl.api.modbus.register_map import HOLDING, INPUT, UNDEFINED_I32, Item, Kind
 from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.api.modbus.status import Handshake, values
 from cellctl.api.modbus.submission import LineSubmission
@@ -263,7 +263,7 @@ def _described(item: Item, writer: str, value: Value) -> dict[str, Any]:
         "text": item.text,
         "unit": item.unit,
         "writer": writer,
-        "value": _plain(value),
+        "value": None if item.kind is Kind.I32 and value == UNDEFINED_I32 else _plain(value),
     }
 
 

@@ -16,7 +16,8 @@ class Register(Form):
     writer: str
     """Who writes it: `cell` (input registers) or `line` (holding registers)."""
     value: Any
-    """What the cell says; of what the line writes the plain words of its registers."""
+    """What the cell says, null for a value that there is not; of what the line writes the plain
+    words of its registers."""
 
 
 class RegisterList(Form):

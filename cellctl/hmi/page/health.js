@@ -4,7 +4,15 @@ import { ask } from "./api.js";
 import { give, visitor, whyNot } from "./buttons.js";
 import { h, num, shown, table, time } from "./dom.js";
 import { ageS, cell } from "./live.js";
-import { spoken, t } from "./texts.js";
+import { given, label, spoken, t } from "./texts.js";
+
+// A command has the word of its button; what it was about stands behind it.
+function done({ action, detail }) {
+  if (action === "set") return detail.acknowledged ? `${t("cmd_acknowledge")} F${detail.acknowledged}` : t("cmd_mode");
+  const command = given(`cmd_${action}`, "") || given(`audit_${action}`, action);
+  const of = action === "start" ? [detail.mode === "maintenance" ? t("procedure") : t("recipe"), detail.recipe, detail.serial] : [detail.procedure && label(detail.procedure)];
+  return [command, ...of].filter(Boolean).join(" ");
+}
 
 async function more(root) {
   try {
@@ -15,7 +23,7 @@ async function more(root) {
   if (visitor.role !== "maintain") return;
   try {
     const { entries } = await ask("audit?limit=50");
-    root.querySelector("#audit")?.replaceChildren(h("h2", {}, t("audit")), table([t("started"), t("who"), t("action"), t("reason")], entries.map((one) => [time(one.time), one.actor, one.action, one.detail.reason || ""])));
+    root.querySelector("#audit")?.replaceChildren(h("h2", {}, t("audit")), table([t("started"), t("who"), t("action"), t("reason")], entries.map((one) => [time(one.time), one.actor, done(one), one.detail.reason || ""])));
   } catch { /* shown at the next visit */ }
 }
 

@@ -2,7 +2,7 @@
 
 import { ask } from "./api.js";
 import { h, num, shown, table, time } from "./dom.js";
-import { t } from "./texts.js";
+import { given, label, t } from "./texts.js";
 
 const PAGE = 30;
 
@@ -17,7 +17,7 @@ async function search(place, query, before = null) {
   const filter = new URLSearchParams({ ...query, limit: PAGE, ...(before ? { before } : {}) });
   try {
     const { runs } = await ask(`runs?${filter}`);
-    const rows = runs.map((run) => [h("a", { href: `#history/${run.number}` }, `${run.number}`), run.serial, run.recipe_name, run.mode,
+    const rows = runs.map((run) => [h("a", { href: `#history/${run.number}` }, `${run.number}`), run.serial, run.mode === "maintenance" ? label(run.recipe_name) : run.recipe_name, given(`mode_${run.mode.toUpperCase()}`, run.mode),
       time(run.started), verdict(run.ended_as), run.operator || "—"]);
     const more = runs.length === PAGE ? h("button", { type: "button", onclick: () => search(place, query, runs[runs.length - 1].number) }, t("older")) : null;
     place.replaceChildren(runs.length ? table([t("run_head"), t("serial"), t("recipe"), t("mode"), t("started"), t("result"), t("operator")], rows) : h("p", {}, t("no_runs")), ...(more ? [more] : []));
@@ -40,7 +40,7 @@ function list(root, wanted = {}) {
     result: h("select", { id: "find-result" }, RESULTS.map((word) => h("option", { value: word }, t(word ? `result_${word}` : "any")))),
     fault: input("fault", { type: "number", min: 1 }), since: input("since", { type: "date" }), until: input("until", { type: "date" }), calibration: input("calibration"),
   };
-  const label = { serial: "serial_begins", fault: "fault_or_alarm", since: "from_day", until: "to_day", calibration: "used_calibration" };
+  const heading = { serial: "serial_begins", fault: "fault_or_alarm", since: "from_day", until: "to_day", calibration: "used_calibration" };
   const found = h("section", { id: "found" });
   const go = (event) => {
     event?.preventDefault();
@@ -48,7 +48,7 @@ function list(root, wanted = {}) {
     const query = { ...asked, since: day(asked.since, 0), until: day(asked.until, 1) };
     search(found, Object.fromEntries(Object.entries(query).filter(([, value]) => value)));
   };
-  root.replaceChildren(h("section", {}, h("form", { onsubmit: go }, Object.entries(field).map(([name, one]) => h("label", {}, t(label[name] || name), one)), h("button", {}, t("search")))), found);
+  root.replaceChildren(h("section", {}, h("form", { onsubmit: go }, Object.entries(field).map(([name, one]) => h("label", {}, t(heading[name] || name), one)), h("button", {}, t("search")))), found);
   go();
 }
 
@@ -111,7 +111,7 @@ async function detail(root, number) {
         h("a", { href: `/api/v1/runs/${number}/recording`, download: "" }, t("recording")), " · ",
         h("a", { href: `/api/v1/runs/${number}/record.zip`, download: "" }, t("record_zip")), " · ",
         h("a", { href: `#history/behind=${run.head.serial}` }, t("behind_link"))),
-      figures(run), ...passes(run), h("h2", {}, t("steps")), table([t("step"), t("label"), t("began"), t("ended")], run.phases.map((one) => [one.number, one.label, time(one.began), time(one.ended)])),
+      figures(run), ...passes(run), h("h2", {}, t("steps")), table([t("step"), t("label"), t("began"), t("ended")], run.phases.map((one) => [one.number, label(one.label), time(one.began), time(one.ended)])),
       ...used(run.head),
       run.gauges.length ? table([t("hole"), num("mm"), t("source"), t("started"), t("verdict"), ""], run.gauges.map((one) => [one.hole, num(shown(one.diameter_mm, 2)), one.source, time(one.time), verdict(one.verdict), one.counts ? "" : t("superseded")])) : "",
       h("div", { class: "pictures" }, images.map((file) => h("figure", {}, h("img", { loading: "lazy", src: `/api/v1/runs/${number}/artefacts/${file.name}`, alt: file.name }), h("figcaption", {}, file.name)))));

@@ -6,7 +6,7 @@ import { t } from "./texts.js";
 
 function block(writer) {
   const items = (cell.description?.registers || []).filter((one) => one.writer === writer);
-  const rows = items.map((one) => [num(`${one.address}`), one.name, num(`${one.value} ${one.unit}`), one.text]);
+  const rows = items.map((one) => [num(`${one.address}`), one.name, num(one.value === null ? "—" : `${one.value} ${one.unit}`), one.text]);
   return [h("h2", {}, t(`registers_${writer}`)), table([num(t("address")), t("label"), num(t("value")), t("meaning")], rows)];
 }
 

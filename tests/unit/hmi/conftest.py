@@ -45,6 +45,10 @@ def _store(folder: Path) -> None:
         record = {"checks": [check | {"passed": residual <= 0.2}]}
         until = made.replace(year=2036)
         store.add_calibration(StoredCalibration("head", record, made, until, "test", "H-1"))
+    asked = {"mode": "maintenance", "recipe": 101, "serial": ""}
+    store.audit("page:anna", "start", asked)
+    store.audit("page:anna", "procedure ended", {"procedure": "calibrate head 1"})
+    store.audit("page:anna", "set", {"acknowledged": 512})
     store.audit("page:anna", "reset", {"reason": "shift begins"})
     store.close()
 

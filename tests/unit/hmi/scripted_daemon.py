@@ -117,7 +117,15 @@ class PaperDaemon:
                     "unit": "",
                     "writer": "cell",
                     "value": 4,
-                }
+                },
+                {
+                    "address": 31,
+                    "name": "error_x",
+                    "text": "error in x",
+                    "unit": "µm",
+                    "writer": "cell",
+                    "value": None,
+                },
             ],
             "last_run": None,
             "records": "",

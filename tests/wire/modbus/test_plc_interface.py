@@ -430,3 +430,11 @@ async def test_a_run_keeps_registers_of_both_sides_without_their_counters(line: 
     port.beat()
     await line.heartbeat(client)
     assert port.recorded() == recorded
+
+
+async def test_a_value_that_there_is_not_is_shown_as_none(line: Line) -> None:
+    """On the wire it has a number of its own, which nobody at a page knows."""
+    port, _client = await line.open()
+    shown = {one["name"]: one["value"] for one in port.shown()}
+    assert shown["force_z"] is None
+    assert isinstance(shown["state"], int)

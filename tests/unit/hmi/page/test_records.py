@@ -30,6 +30,38 @@ def test_past_alarms_say_when_and_by_whom_they_were_acknowledged(
     expect(past.locator("tbody tr").last).to_contain_text("-50.8 N")
 
 
+def test_modes_procedures_and_commands_are_told_in_chinese(screen: Screen) -> None:
+    tab = screen.tab
+    tab.click("#language")
+    tab.goto(f"{screen.url}#history")
+    runs = tab.locator("#found tbody tr")
+    expect(runs.first).to_contain_text("生产")
+    screen.sign_in("boris")
+    tab.goto(f"{screen.url}#health")
+    expect(tab.locator("#audit tbody tr").first).to_contain_text("复位")
+    expect(tab.locator("#audit")).to_contain_text("启动 维护程序 101")
+    expect(tab.locator("#audit")).to_contain_text("标定测头 1")
+    expect(tab.locator("#audit")).to_contain_text("F512")
+
+
+def test_a_register_without_a_value_shows_a_dash(screen: Screen) -> None:
+    screen.tab.goto(f"{screen.url}#line")
+    expect(screen.tab.locator("#from-cell tbody tr").last).to_contain_text("—")
+    expect(screen.tab.locator("#from-cell")).not_to_contain_text("null")
+
+
+def test_heads_of_past_alarms_are_whole_on_an_upright_panel(screen: Screen) -> None:
+    """Chinese has no spaces: a head may otherwise break behind every character."""
+    tab = screen.tab
+    tab.set_viewport_size({"width": 768, "height": 1024})
+    tab.click("#language")
+    tab.goto(f"{screen.url}#alarms")
+    head = tab.locator("#past thead th").last
+    expect(head).to_have_text("确认时间")
+    box = head.bounding_box()
+    assert box["width"] > 1.5 * 4 * 10
+
+
 def test_what_stands_behind_a_part(screen: Screen) -> None:
     tab = screen.tab
     tab.goto(f"{screen.url}#history/1")
