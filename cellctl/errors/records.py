@@ -247,12 +247,8 @@ class FleetRefused(FleetError):
 
     number = 832
     text = "Fleet database refuses access"
-    cause = (
-        "No fleet was made there, the cell was never added, the user is another one, or a right "
-    )
-    cause += "right is missing."
-    remedy = "The database's owner first makes it that of a fleet with `cellctl fleet init`; its "
-    remedy += "administrator adds the cell or its user with `cellctl fleet add`."
+    cause = "The database is no fleet's, lacks the cell, or grants this user too little."
+    remedy = "Its owner makes it a fleet's: `cellctl fleet init`; cells: `cellctl fleet add`."
 
 
 class FleetDiffers(FleetError):
