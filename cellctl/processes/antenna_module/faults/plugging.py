@@ -125,7 +125,8 @@ class PlugShortSeat(PluggingError):
     text = "Plug is not seated at its depth"
     cause = (
         "A foreign body, a shell that catches, or a socket at another height. Where no seat was "
-        "felt also forces that are too small: a sensor with another unit or scale."
+        "felt also forces that are too small or have the other sign: a sensor with another unit, "
+        "scale or `flange_T_sensor`."
     )
     remedy = (
         "Put the module into quarantine; inspect socket and shell. Compare the greatest force in "
