@@ -25,13 +25,15 @@ _ACROSS = np.array([0.0, 1.0])
 _FALLEN_DIPS = 1.4
 """On the edge of a hole a tilted peg rests deeper by r θ c / e than far from it, at a distance e
 from its axis: with this dip it stands within 2.5 c."""
+_NEAR_DIPS = 0.75
+"""With this dip, and in the middle of the valley, the hole is half a radius ahead."""
 _DOWNHILL_SPEEDS = 4.0
 """Multiple of the speed of a touch: the arm does not press while the face falls away."""
 _ACROSS_SPEEDS = 1.5
 """Up the flanks, where the arm presses as it climbs."""
 _BACK_SPEEDS = 2.0
 """Near the wall the peg may stand in the mouth, and is not to be torn out."""
-_SIDE_SHARE = 0.6
+_SIDE_SHARE = 0.75
 """Flanks are steep, and press and side force add up."""
 _RESTS_N, _RESTS_SIGMAS = 0.8, 4.0
 """A peg that nothing pushes sideways with more has come to rest; or with more than the noise."""
@@ -119,7 +121,7 @@ class _Valley:
             end_m = at_m + sign * self._reach_m * _ACROSS
             beyond = _SideReached(self, at_m, sign, half_m)
             motion = await self._slide(end_m, _ACROSS_SPEEDS * self._speed, beyond)
-            if motion.ended is Ended.FORCE:
+            if motion.ended is Ended.FORCE and self._near_hole(motion.last):
                 # A stiff arm cannot climb a flank that is so steep: the peg finds the middle.
                 return await self._let_go()
             self._fallen = beyond.fallen
@@ -139,7 +141,8 @@ class _Valley:
             end_m = begin_m + self._reach_m * _TOWARDS
             motion = await self._slide(end_m, 1.25 * self._speed, stop)
             self._fallen = stop.fallen
-            if motion.ended is not Ended.FORCE or _ahead(motion.last):
+            against = _ahead(motion.last) and self._near_hole(motion.last)
+            if motion.ended is not Ended.FORCE or against:
                 break
             # It leans on a flank, beside the middle of the valley: the way goes on there.
             begin_m = await self._let_go()
@@ -181,6 +184,10 @@ class _Valley:
     def dip_m(self, sample: ContactSample) -> float:
         """How deep the peg stands below a touch beside the hole."""
         return float(sample.task_position_tip_m[2]) - self._flat_m
+
+    def _near_hole(self, sample: ContactSample) -> bool:
+        """Only there the flanks are steep, and a wall stands ahead."""
+        return self.dip_m(sample) > _NEAR_DIPS * self._full_m
 
     def fell_in(self, dip_m: float) -> bool:
         """Deeper than any resting tilted peg."""
