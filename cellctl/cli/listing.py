@@ -66,7 +66,17 @@ FILES = (
 )
 
 
+BROUGHT = (
+    Listed("devices", _CELL, "List the cameras that GenTL producers see; opens none of them."),
+    Listed("measure-connector", OFFLINE, "Measure the contacts of a connector in one image."),
+    Listed("plan-plug", OFFLINE, "Where the flange goes to plug a connector, with its error."),
+)
+"""Those of the processes and drivers that come with cellctl."""
+
+
 def installed(names: list[str]) -> Iterator[Listed]:
-    """Commands that processes and drivers bring, whose own words would load their packages."""
+    """Commands that processes and drivers bring. The words of other packages' would load them."""
+    words = {listed.name: listed for listed in BROUGHT}
     for name in names:
-        yield Listed(name, INSTALLED, f"`cellctl {name} --help` says what it does.")
+        told = f"`cellctl {name} --help` says what it does."
+        yield words.get(name, Listed(name, INSTALLED, told))

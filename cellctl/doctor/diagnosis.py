@@ -66,5 +66,8 @@ def _cell(path: Path) -> tuple[CellConfig | None, Finding]:
     try:
         cell = load_cell(path)
     except CellError as fault:
-        return None, bad("cell file", str(fault), f"cellctl check {path}")
+        remedy = f"cellctl check {path}"
+        if not path.exists():
+            remedy = "`make install` puts one there, or name yours: cellctl doctor CELL.toml"
+        return None, bad("cell file", str(fault), remedy)
     return cell, good("cell file", f"{path}, cell '{cell.name}'")

@@ -17,7 +17,13 @@ from fakes.demo.control import Refused
 from fakes.demo.demo import Demo
 from fakes.demo.gentl import Cameras, UnusualCellFile
 from fakes.demo.ports import NoLoopback, PortInUse, check_ports
-from fakes.demo.safety import FolderInUse, NotSimulated, require_own_folder, require_simulated
+from fakes.demo.safety import (
+    FolderInUse,
+    NotSimulated,
+    UnfitCell,
+    require_own_folder,
+    require_simulated,
+)
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.gentl.build import NoCompilerError
 from fakes.imperfections import UnknownImperfection, parsed_scale
@@ -39,6 +45,7 @@ _REFUSALS = (
     UnknownImperfection,
     NoCompilerError,
     UnusualCellFile,
+    UnfitCell,
 )
 """Each of them is a sentence for the user."""
 
@@ -106,7 +113,7 @@ def demo(
     job = Job(seed=seed, calibrate=calibrate, stay=stay, faults=tuple(fault or ()))
     try:
         shown = registry.find(process)
-        file = None if cell is None else shown.cells.get(cell, Path(cell))
+        file = None if cell is None else _cell_file(cell, shown)
         files = Files(
             scenario=scenario or _beside(file) or shown.scenario,
             cell=file or shown.cell,
@@ -121,6 +128,31 @@ def demo(
         complaint.print(str(error), markup=False)
         code = NOT_STARTED
     raise typer.Exit(code)
+
+
+def _cell_file(cell: str, shown: Demo) -> Path:
+    """By its short name or path; raises ``UnfitCell`` for what is neither of this process."""
+    file = shown.cells.get(cell, Path(cell))
+    if not file.exists():
+        raise UnfitCell(_no_cell_file(cell, shown))
+    try:
+        recipes = tomllib.loads(file.read_text(encoding="utf-8")).get("recipes", [])
+    except ValueError:
+        return file  # the daemon says what is wrong with it
+    others = sorted({str(one.get("process", "")) for one in recipes} - {shown.process})
+    if others and shown.process not in {one.get("process") for one in recipes}:
+        raise UnfitCell(f"{file} is of the process {', '.join(others)}: name that by --process")
+    return file
+
+
+def _no_cell_file(cell: str, shown: Demo) -> str:
+    here = ", ".join(shown.cells) or "no short names"
+    elsewhere = [
+        f"; --process {name} has {cell!r}"
+        for name in registry.demonstrated()
+        if name != shown.process and cell in registry.find(name).cells
+    ]
+    return f"no cell file {cell}; {shown.process} has {here}{''.join(elsewhere)}"
 
 
 def _beside(cell: Path | None) -> Path | None:

@@ -14,6 +14,10 @@ class NotSimulated(RuntimeError):
     """The cell file has real devices."""
 
 
+class UnfitCell(RuntimeError):
+    """No cell file, or that of another process."""
+
+
 class FolderInUse(RuntimeError):
     """The folder for record and logs holds what no demonstration has made."""
 

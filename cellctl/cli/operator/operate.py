@@ -162,7 +162,9 @@ def _end_motion(socket: SocketOption, name: PlainName, goal: Collection[str]) ->
 
 def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wait: bool) -> None:
     """Give the command and wait; interrupting the wait does not end the run."""
-    known = {(alarm.number, alarm.since) for alarm in client.status().alarms}
+    before = client.status()
+    known = {(alarm.number, alarm.since) for alarm in before.alarms}
+    goal: tuple[str, ...] = ()
     client.command(request)
     steps = isinstance(request, StartCommand) and request.single_step
     # "Taken" only means that the command is being executed. Starting may still fail, and the
@@ -172,7 +174,10 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
         if wait and not (steps and report.state == "HELD"):
             # Without a time-out, because nobody knows how long a person keeps a run on hold.
             goal = ("COMPLETED", "HELD") if steps else ("COMPLETED",)
-            report = _arrived(client.settled(_ENDED, timeout_s=None, seen=_steps_told()), goal)
+            report = client.settled(_ENDED, timeout_s=None, seen=_steps_told())
+    if goal and report.last_run == before.last_run:
+        # Without a record of its own there is nothing to show but why.
+        _arrived(report, goal)
     _tell(report)
     new = [alarm for alarm in report.alarms if (alarm.number, alarm.since) not in known]
     for alarm in new:
@@ -185,7 +190,9 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
             "held before the next step: `cellctl unhold` carries it out, `cellctl stop` ends it all"
         )
     elif wait:
-        _show_result(report, dry_run=isinstance(request, StartCommand) and request.dry_run)
+        _show_run(report)
+        _arrived(report, goal)
+        _judge_result(report, dry_run=isinstance(request, StartCommand) and request.dry_run)
 
 
 @contextmanager
@@ -202,8 +209,8 @@ def _going_on(what: str) -> Iterator[None]:
         raise typer.Exit(_INTERRUPTED) from None
 
 
-def _show_result(report: StatusReport, *, dry_run: bool) -> None:
-    """What `cellctl runs show` says of the run; raises ``CommandMissedItsGoal`` if not good."""
+def _show_run(report: StatusReport) -> None:
+    """What `cellctl runs show` says of the run, of a bad one as well."""
     # Only a run that is shown needs the run store and what it loads.
     from cellctl.cli.records.runs import show
 
@@ -212,6 +219,10 @@ def _show_result(report: StatusReport, *, dry_run: bool) -> None:
             show(report.last_run.number, Path(report.data_dir))
         except StoreUnavailable as error:
             typer.echo(f"run {report.last_run.number} cannot be shown: {error}", err=True)
+
+
+def _judge_result(report: StatusReport, *, dry_run: bool) -> None:
+    """Raise ``CommandMissedItsGoal`` if the result is not good."""
     if dry_run:
         # It makes no part, so its result is not good, and nothing is wrong with it.
         typer.echo("the dry run has ended before the first step in contact")

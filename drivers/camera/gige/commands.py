@@ -14,7 +14,7 @@ from drivers.camera.gige.connection import LibraryProcess
 from drivers.camera.gige.producer_files import PRODUCER_PATH, producer_files
 from drivers.camera.gige.protocol import CamerasSeen, CameraState, ListRequest, SeenCamera
 
-_PANEL = "Cell"
+_PANEL = "The cell"
 _KEYS = ("serial_number", "user_name", "ip_address", "id")
 """What a cell file may name a camera by."""
 

@@ -13,7 +13,7 @@ import typer
 from typer.testing import CliRunner
 
 from cellctl.cli import commands
-from cellctl.cli.listing import CELL, FILES, OPERATOR, Listed
+from cellctl.cli.listing import BROUGHT, CELL, FILES, OPERATOR, Listed
 from cellctl.cli.operator import commands as operator_commands
 from cellctl.records import RunStore
 from cellctl.version import software
@@ -29,7 +29,13 @@ def test_every_command_is_listed_once_and_no_other() -> None:
     assert [listed.name for listed in OPERATOR] == names
 
 
-@pytest.mark.parametrize("listed", [*CELL, *OPERATOR, *FILES], ids=lambda one: one.name)
+def test_what_comes_with_cellctl_is_told_in_words() -> None:
+    told = CliRunner().invoke(commands.whole_app(), ["--help"]).output
+    assert "says what it does" not in told
+    assert {one.name for one in BROUGHT} <= set(told.split())
+
+
+@pytest.mark.parametrize("listed", [*CELL, *OPERATOR, *FILES, *BROUGHT], ids=lambda one: one.name)
 def test_a_command_stands_in_its_own_panel_with_its_own_words(listed: Listed) -> None:
     group: Any = typer.main.get_command(commands.whole_app())
     name, panel, summary = next(row for row in group.rows(None) if row[0] == listed.name)

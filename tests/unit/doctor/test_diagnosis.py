@@ -228,7 +228,7 @@ def test_what_depends_on_nothing_is_examined_without_unit_and_cell_file(tmp_path
     healthy.clock_is_set = False
     found = {finding.subject: finding for finding in findings(healthy, tmp_path / "none.toml")}
     assert found["cell file"].health is Health.BAD
-    assert "cellctl check" in found["cell file"].remedy
+    assert "make install" in found["cell file"].remedy
     assert found["clock"].health is Health.DOUBTFUL
     assert found["packages"].health is Health.GOOD
 

@@ -202,6 +202,29 @@ def test_the_end_of_a_run_is_shown_as_its_record(daemon: Agreeable, tmp_path: Pa
     assert cellctl("runs", "show", str(number), "--data-dir", str(store.path)).output in done.output
 
 
+def test_a_run_that_ended_bad_is_shown_as_its_record_too(
+    daemon: Agreeable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = RunStore(tmp_path / "store")
+    number = good_run(store)
+    store.close()
+    daemon.leads_to["start"] = "EXECUTE"
+    ended = RunReport(
+        number=number, serial="S", recipe="r", mode="production", started=utc_now(), result="bad"
+    )
+
+    def nap(_s: float) -> None:
+        daemon.shows |= {"state": "STOPPED", "state_requested": "STOPPED", "result": "bad"}
+        daemon.shows |= {"last_run": ended, "faults": (FAULT,)}
+
+    monkeypatch.setattr(time, "sleep", nap)
+    daemon.shows["data_dir"] = str(tmp_path / "store")
+    done = cellctl("start", "--serial", "S", "--wait")
+    assert fault_of(done) is CommandMissedItsGoal
+    assert "STOPPED: F202 lost" in str(done.exception)
+    assert cellctl("runs", "show", str(number), "--data-dir", str(store.path)).output in done.output
+
+
 def test_a_reset_that_ends_in_aborted_failed(daemon: Agreeable) -> None:
     daemon.leads_to["reset"] = "ABORTED"
     daemon.shows["faults"] = (FAULT,)

@@ -51,6 +51,19 @@ def test_a_shipped_cell_is_known_by_its_short_name(tmp_path: Path, taken: int) -
         assert f"port {taken}" in refused(*asked)
 
 
+def test_a_name_that_no_cell_has_is_told_with_those_that_there_are() -> None:
+    told = refused("--process", "peg-in-hole", "--cell", "pni")
+    assert "no cell file pni; peg-in-hole has connector, pin, pin-rpc" in told
+    assert "--process peg-in-hole has 'pin'" in refused("--cell", "pin")
+
+
+def test_the_cell_file_of_another_process_starts_nothing(tmp_path: Path) -> None:
+    file, out = str(CONFIG / "insertion-pin.toml"), tmp_path / "out"
+    told = refused("--process", "antenna-module", "--cell", file, "--out", str(out))
+    assert "is of the process peg-in-hole: name that by --process" in told
+    assert not out.exists()
+
+
 def _on_a_taken_port(folder: Path, taken: int) -> Path:
     """Refused for its port: so it is this file that was read."""
     text = (CONFIG / "insertion-pin.toml").read_text(encoding="utf-8")
