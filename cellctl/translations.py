@@ -41,7 +41,7 @@ class FaultWords:
 def fault_words(fault: type[CellError], language: str) -> FaultWords:
     """In this language; in English where nobody has translated them."""
     found = translated(fault.__module__, language).get(str(fault.number))
-    if found is None:
+    if found is None or not _of_today(fault, language, str(found.get("english", ""))):
         return FaultWords(fault.text, fault.cause, fault.remedy)
     english = {"text": fault.text, "cause": fault.cause, "remedy": fault.remedy}
     return FaultWords(**{part: found.get(part, words) for part, words in english.items()})
@@ -85,6 +85,20 @@ def of_english(fault: type[CellError]) -> str:
     """Digest of the English words: a translation says which ones it was made of."""
     words = "\n".join((fault.text, fault.cause, fault.remedy))
     return hashlib.sha256(words.encode()).hexdigest()[:8]
+
+
+@cache
+def _of_today(fault: type[CellError], language: str, english: str) -> bool:
+    """Whether a translation was made of these English words. One of others may say the contrary of
+    what is to be done; one that does not say is believed. Each is warned of once."""
+    if english == of_english(fault):
+        return True
+    made = f"made of other English words ({english})" if english else "not said of which English"
+    remedy = f'once it fits, write english = "{of_english(fault)}"'
+    log.warning(
+        "%s of F%d in %s: %s", language, fault.number, fault.__module__, f"{made}; {remedy}"
+    )
+    return not english
 
 
 @cache

@@ -3,6 +3,7 @@ parts with it over Modbus; not one line of the core knows it.
 """
 
 import os
+import re
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.guides.package import ROOT, run
-from tests.guides.weighing import SmallCell
+from tests.guides.weighing import GUIDE, SmallCell
 from tests.rigs.whole_cell.outside_plc import OutsidePlc
 from tests.rigs.whole_cell.own_cell import Program
 
@@ -63,6 +64,36 @@ def test_a_part_is_weighed_over_modbus(
     shutil.rmtree(out)
     done = run("cellctl", "runs", "export", "1", *options, path=(ROOT,))
     assert done.returncode == 0, "a run of a process that is no longer installed"
+
+
+@pytest.mark.long
+def test_the_commands_of_the_page_weigh_a_part(
+    small: SmallCell, installed: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every command but those that install the package and copy the cell file, on ports of this
+    test's own."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(installed), str(ROOT)]))
+    monkeypatch.setenv("CELLCTL_SOCKET", str(small.store / "cellctl.sock"))
+    monkeypatch.setenv("CELLCTL_DATA_DIR", str(small.store))
+    own = {"acme.toml": str(small.file), "config/small.scenario.toml": str(small.scenario)}
+    text = GUIDE.read_text(encoding="utf-8")
+    lines = re.findall(r"^\.venv/bin/(?:python -m )?((?:cellctl|fakes) .*)$", text, re.MULTILINE)
+    assert len(lines) == 6
+    running: list[Program] = []
+    try:
+        for number, line in enumerate(lines):
+            module, *words = (own.get(word, word) for word in line.split())
+            if words[0] == "run":
+                running.append(Program.start(tmp_path / str(number), module, *words))
+                running[-1].ready()
+                continue
+            done = run(module, *words, path=(installed, ROOT))
+            assert done.returncode == 0, done.stdout + done.stderr
+        assert "B-1" in done.stdout
+        assert "good" in done.stdout
+    finally:
+        for program in reversed(running):
+            program.kill()
 
 
 @pytest.mark.long

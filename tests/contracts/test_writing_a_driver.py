@@ -12,6 +12,7 @@ import pytest
 
 from tests.guides.package import (
     ROOT,
+    contract_by_hand,
     contract_of,
     guide_package,
     registry_beside,
@@ -34,6 +35,12 @@ def test_the_contract_holds(written: Path, installed: Path) -> None:
     done = contract_of(written, installed)
     assert done.returncode == 0, done.stdout + done.stderr
     assert " passed" in done.stdout
+
+
+def test_the_contract_is_run_as_the_page_says(written: Path, installed: Path) -> None:
+    done = contract_by_hand(GUIDE, written, installed)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "warning" not in done.stdout
 
 
 def test_the_core_finds_the_driver(installed: Path) -> None:

@@ -12,7 +12,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 _FILE = re.compile(
-    r"^`(?P<path>[\w/]+\.\w+)`\n```(?:python|toml|markdown)\n(?P<code>.*?)^```$",
+    r"^`(?P<path>[\w/.]+\.\w+)`\n```(?:python|toml|markdown)\n(?P<code>.*?)^```$",
     re.MULTILINE | re.DOTALL,
 )
 
@@ -60,6 +60,26 @@ def contract_of(folder: Path, site: Path, only: str = "") -> "subprocess.Complet
     options = ["-c", str(folder / "pyproject.toml"), "-p", "no:cacheprovider", "-p", "no:xdist"]
     options += ["-k", only] if only else []
     return run("pytest", *options, "-q", "-W", "error", str(folder / "contract"), path=(ROOT, site))
+
+
+def contract_by_hand(guide: Path, folder: Path, site: Path) -> "subprocess.CompletedProcess[str]":
+    """The contract as the commands of a guide run it, with its package installed in ``site``."""
+    text = guide.read_text(encoding="utf-8")
+    (commands,) = re.findall(r"^cd (?:/\S+)\nPYTHONPATH=\S+ \S+ contract$", text, re.MULTILINE)
+    name = re.search(r"/path/to/(cellctl-\w+)", commands)
+    assert name is not None
+    # Installed elsewhere than in this environment; the rest is as it is written.
+    places = {
+        name[0]: str(folder),
+        "/path/to/the/checkout/.venv/bin/pytest": str(Path(sys.executable).parent / "pytest"),
+        "PYTHONPATH=/path/to/the/checkout": f"PYTHONPATH={ROOT}:{site}",
+    }
+    for written, here in places.items():
+        assert written in commands
+        commands = commands.replace(written, here)
+    return subprocess.run(
+        ["bash", "-ec", commands], capture_output=True, text=True, timeout=180, check=False
+    )
 
 
 def registry_beside(site: Path) -> "subprocess.CompletedProcess[str]":

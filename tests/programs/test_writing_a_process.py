@@ -42,6 +42,13 @@ def test_its_fault_is_told_with_its_remedy(installed: Path) -> None:
     assert "stop" in done.stdout
 
 
+def test_its_fault_is_told_in_chinese_by_what_pip_installs(installed: Path) -> None:
+    done = run("cellctl", "faults", "1001", "--lang", "zh", path=(installed, ROOT))
+    assert done.returncode == 0, done.stderr
+    assert "工件重量不对" in done.stdout
+    assert "english" not in done.stderr
+
+
 def test_without_the_package_the_recipe_is_refused(small: SmallCell) -> None:
     done = run("cellctl", "check", str(small.file), path=(ROOT,))
     assert done.returncode == 1

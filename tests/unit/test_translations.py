@@ -223,6 +223,28 @@ def test_a_plug_in_is_told_in_english_unless_it_brings_its_own_words(
         forget()
 
 
+def test_a_translation_of_other_english_is_not_told_and_its_digest_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    install(tmp_path, "labels_old", FAULTS.format(number=1814))
+    words = '[1814]\ntext = "标签歪斜"\nenglish = "abcd"\n'
+    (tmp_path / "labels_old" / "faults.zh.toml").write_text(words, "utf-8")
+    forget()
+    try:
+        fault = known_fault(1814)
+        assert fault is not None
+        assert fault_words(fault, "zh").text == fault.text
+        assert f'english = "{of_english(fault)}"' in caplog.text
+        caplog.clear()
+        fault_words(fault, "zh")
+        assert caplog.text == "", "once is enough"
+    finally:
+        del sys.modules["labels_old"], sys.modules["labels_old.faults"]
+        monkeypatch.undo()
+        forget()
+
+
 def forget() -> None:
     plugins.installed.cache_clear()
     fault_catalogue.fault_modules.cache_clear()
