@@ -87,18 +87,20 @@ def of_english(fault: type[CellError]) -> str:
     return hashlib.sha256(words.encode()).hexdigest()[:8]
 
 
-@cache
 def _of_today(fault: type[CellError], language: str, english: str) -> bool:
     """Whether a translation was made of these English words. One of others may say the contrary of
-    what is to be done; one that does not say is believed. Each is warned of once."""
+    what is to be done; one that does not say is believed."""
     if english == of_english(fault):
         return True
     made = f"made of other English words ({english})" if english else "not said of which English"
     remedy = f'once it fits, write english = "{of_english(fault)}"'
-    log.warning(
-        "%s of F%d in %s: %s", language, fault.number, fault.__module__, f"{made}; {remedy}"
-    )
+    _warn_once(f"{language} of F{fault.number} in {fault.__module__}: {made}; {remedy}")
     return not english
+
+
+@cache
+def _warn_once(what: str) -> None:
+    log.warning("%s", what)
 
 
 @cache
