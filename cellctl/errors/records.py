@@ -159,8 +159,8 @@ class NotReplayable(RecordsError):
 
     number = 813
     text = "The run cannot be replayed"
-    cause = "It was recorded by a version that kept no raw images or readings, or ended before it "
-    cause += "measured; a file of it is missing, or its process cannot compute such a run anew."
+    cause = "Its process cannot compute such a run anew, or the record lacks raw images or "
+    cause += "readings: an end before it measured, an old version, or a file that is missing."
     remedy = "See the detail for what is missing; `cellctl runs verify` finds damaged files."
     reaction = Reaction.WARN
 

@@ -1,7 +1,7 @@
 """`cellctl clear|reset|start|…`: what an operator may ask of the running daemon."""
 
 from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -183,8 +183,12 @@ def _begin(client: DaemonClient, request: StartCommand | ProcedureCommand, *, wa
     for alarm in new:
         typer.echo(f"alarm {alarm.text}")
     # An alarm that comes again while it is active has the time of its first one.
-    if older := [f"F{alarm.number:03d}" for alarm in report.alarms if alarm not in new]:
-        typer.echo(f"not yet acknowledged: {', '.join(older)}; see `cellctl alarms`")
+    if older := [alarm.number for alarm in report.alarms if alarm not in new]:
+        if report.last_run != before.last_run:
+            for text in _came_again(report, older):
+                typer.echo(f"alarm {text}")
+        numbers = ", ".join(f"F{number:03d}" for number in older)
+        typer.echo(f"not yet acknowledged: {numbers}; see `cellctl alarms`")
     if report.state == "HELD":
         typer.echo(
             "held before the next step: `cellctl unhold` carries it out, `cellctl stop` ends it all"
@@ -207,6 +211,17 @@ def _going_on(what: str) -> Iterator[None]:
             err=True,
         )
         raise typer.Exit(_INTERRUPTED) from None
+
+
+def _came_again(report: StatusReport, numbers: Collection[int]) -> Iterator[str]:
+    """Alarms of the new run whose numbers were active before: the list of active alarms goes on
+    telling of the part that they came with first."""
+    from cellctl.cli.records.run_store import opened_store
+
+    if report.last_run is not None:
+        with suppress(StoreUnavailable), opened_store(Path(report.data_dir)) as store:
+            alarms = store.run(report.last_run.number).alarms
+            yield from (alarm.text for alarm in alarms if alarm.number in numbers)
 
 
 def _show_run(report: StatusReport) -> None:

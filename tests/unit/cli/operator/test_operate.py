@@ -168,6 +168,29 @@ def test_alarms_of_a_start_are_told(daemon: Agreeable) -> None:
     assert "not yet acknowledged: F501; see `cellctl alarms`" in said
 
 
+def test_an_alarm_that_an_earlier_part_has_too_is_told_of_this_one(
+    daemon: Agreeable, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The list of active alarms has each number once, with the part that it came with first."""
+    store = RunStore(tmp_path / "store")
+    number = good_run(store)
+    store.add_alarm(number, ALARM.number, f"F{ALARM.number} of this part")
+    store.close()
+    daemon.shows |= {"alarms": (ALARM,), "data_dir": str(tmp_path / "store")}
+    daemon.on_its_way_to = "EXECUTE"
+    begun = RunReport(
+        number=number, serial="S", recipe="r", mode="production", started=utc_now(), result=""
+    )
+
+    def nap(_s: float) -> None:
+        daemon.shows |= {"state": "EXECUTE", "state_requested": "EXECUTE", "last_run": begun}
+
+    monkeypatch.setattr(time, "sleep", nap)
+    said = cellctl("start", "--serial", "S").output
+    assert f"alarm F{ALARM.number} of this part" in said
+    assert ALARM.text not in said
+
+
 def test_an_arm_that_presses_is_told_with_what_to_do(daemon: Agreeable) -> None:
     daemon.shows["forces"] = (PRESSING,)
     for name in ("abort", "clear"):
