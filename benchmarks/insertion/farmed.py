@@ -88,6 +88,8 @@ def farmed(
     out: Path | None = found.out
     done = {} if out is None else dict(kept(line, out))
     left = [job for job in jobs if job not in done]
+    # SIGTERM ends a campaign as Ctrl-C does: its workers would go on with all that waits.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     # Ctrl-C reaches the workers, too: they leave it to this process, which cancels what waits.
     pool = ProcessPoolExecutor(
         found.workers,

@@ -53,10 +53,10 @@ def test_what_has_a_line_is_not_run_again(
 
 
 def ended_by_the_operator(job: Job) -> int:
-    """Ctrl-C in this process while the fourth job runs."""
+    """Ctrl-C, or SIGTERM for jobs of b, in this process while the fourth job runs."""
     if job[1] == 3:
         time.sleep(0.5)
-        os.kill(os.getppid(), signal.SIGINT)
+        os.kill(os.getppid(), signal.SIGINT if job[0] == "a" else signal.SIGTERM)
         time.sleep(0.5)
     return job[1]
 
@@ -65,14 +65,17 @@ def ended_by_the_operator(job: Job) -> int:
 def interruptible() -> Iterator[None]:
     """Whoever starts the tests in the background of a shell has Ctrl-C ignored."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    ordinary = signal.getsignal(signal.SIGTERM)
     yield
     signal.signal(signal.SIGINT, before)
+    signal.signal(signal.SIGTERM, ordinary)
 
 
 @pytest.mark.usefixtures("interruptible")
-def test_an_interrupted_campaign_keeps_what_it_has(tmp_path: Path) -> None:
+@pytest.mark.parametrize("by", ["a", "b"])
+def test_an_interrupted_campaign_keeps_what_it_has(tmp_path: Path, by: str) -> None:
     out = tmp_path / "lines.json"
-    jobs = [("a", seed) for seed in range(40)]
+    jobs = [(by, seed) for seed in range(40)]
     with pytest.raises(
         SystemExit, match=r"ended after \d+ of 40 numbers; the same command goes on"
     ):
