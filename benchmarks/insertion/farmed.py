@@ -89,7 +89,7 @@ def farmed(
     done = {} if out is None else dict(kept(line, out))
     left = [job for job in jobs if job not in done]
     # SIGTERM ends a campaign as Ctrl-C does: its workers would go on with all that waits.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)
     # Ctrl-C reaches the workers, too: they leave it to this process, which cancels what waits.
     pool = ProcessPoolExecutor(
         found.workers,
@@ -108,6 +108,7 @@ def farmed(
         sys.exit(counted if out is None else f"{counted}; the same command goes on with {out}")
     finally:
         pool.shutdown(cancel_futures=True)
+        signal.signal(signal.SIGTERM, before)
     if out is not None:
         for name, count in Counter(one[_SOFTWARE] for one in _records(out)).items():
             print(f"{out}: {count} {what} by {name}")
