@@ -133,17 +133,17 @@ class TouchProbe:
         return touched.last
 
     async def slide(
-        self, way_m: Array, speed_m_s: float, until: Stop, *, side_share: float = 1.0
+        self, way_m: Array, speed_m_s: float, until: Stop, *, share: float = 1.0
     ) -> ContactMotion:
-        """Pressed along a way (n, 2); ends with the deadline too, and by a force to the side of so
-        much of the search's."""
+        """Pressed along a way (n, 2) with so much of the search's force, and ended by as much to
+        the side; ends with the deadline too."""
         motion = await self.motions.slide(
             way_m,
-            self.press_n,
+            share * self.press_n,
             speed_m_s,
             # Asked in the motion itself: one slide may take longer than the time that is left.
             either(until, self._late),
-            side_share * self.task.limits.search_n,
+            share * self.task.limits.search_n,
         )
         self.still_in_time(motion.last)
         return motion

@@ -27,14 +27,14 @@ _FALLEN_DIPS = 1.4
 from its axis: with this dip it stands within 2.5 c."""
 _NEAR_DIPS = 0.75
 """With this dip, and in the middle of the valley, the hole is half a radius ahead."""
-_DOWNHILL_SPEEDS = 4.0
+_DOWNHILL_SPEEDS = 3.0
 """Multiple of the speed of a touch: the arm does not press while the face falls away."""
 _ACROSS_SPEEDS = 1.5
 """Up the flanks, where the arm presses as it climbs."""
 _BACK_SPEEDS = 2.0
 """Near the wall the peg may stand in the mouth, and is not to be torn out."""
-_SIDE_SHARE = 0.75
-"""Flanks are steep, and press and side force add up."""
+_FORCE_SHARE = 0.75
+"""Flanks are steep: press and side force add up, and the arm presses more as it climbs."""
 _RESTS_N, _RESTS_SIGMAS = 0.8, 4.0
 """A peg that nothing pushes sideways with more has come to rest; or with more than the noise."""
 _LET_GO = 12
@@ -177,7 +177,7 @@ class _Valley:
         return point_m
 
     async def _slide(self, point_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
-        motion = await self._probe.slide(point_m[None, :], speed_m_s, until, side_share=_SIDE_SHARE)
+        motion = await self._probe.slide(point_m[None, :], speed_m_s, until, share=_FORCE_SHARE)
         self._here_m = motion.last.task_position_tip_m[:2].copy()
         return motion
 
