@@ -1,6 +1,6 @@
 import sys
 from dataclasses import replace
-from math import isnan
+from math import nan
 from pathlib import Path
 
 import pytest
@@ -43,8 +43,13 @@ def test_a_false_verdict_and_a_force_over_the_limit_fail(
 def test_the_lines_in_the_documentation_can_be_gone_on_with() -> None:
     traps = [trap for _, trap in kept(trap_campaign.LINE, KEPT)]
     assert len(traps) > 100
-    assert not any(trap.found for trap in traps)
-    table = trap_campaign.table([*traps, GOOD])
-    column = list(table.columns[4].cells)
-    assert column[0] == "19.7 (1)"
-    assert "–" in column or not any(isnan(trap.force_n) for trap in traps)
+    assert not any((trap.inserted or trap.by_curve == "inserted") > trap.seated for trap in traps)
+    # Of what the documentation tells, only a sensor that stays at a value leads to more force.
+    hard = {trap.state for trap in traps if trap.force_n > trap.limit_n}
+    assert hard <= {TrapState.STUCK}
+    assert len(trap_campaign.table(traps).rows) == len(TrapState)
+
+
+def test_lines_without_a_force_are_told() -> None:
+    shown = trap_campaign.table([GOOD, replace(GOOD, state=TrapState.ON_FACE, force_n=nan)])
+    assert list(shown.columns[4].cells) == ["19.7 (1)", "–"]
