@@ -5,9 +5,10 @@ measured; see ``contact_world`` for what is simpler than on the wire.
 """
 
 import asyncio
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import cast
+from typing import Any, Self, cast
 
 import numpy as np
 
@@ -69,6 +70,16 @@ class CycleCell:
         settings = with_measured(settings.model_copy(update=prompt), figures)
         scenario = SocketScenario.read(file.with_suffix(".scenario.toml"))
         return cls(scenario, recipe, settings, cycle_plan(recipe, settings))
+
+    @classmethod
+    def told(
+        cls, scenario: SocketScenario, recipe: Mapping[str, Any], settings: Mapping[str, Any]
+    ) -> Self:
+        """A cell by its written keys. Raises what refuses a recipe before any motion."""
+        told, known = PegRecipe.model_validate(recipe), PegSettings.model_validate(settings)
+        plan = cycle_plan(told, known)
+        contact_settings(told, plan, known).check()
+        return cls(scenario, told, known, plan)
 
     @property
     def imperfections(self) -> Imperfections:

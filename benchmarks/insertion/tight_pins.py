@@ -10,10 +10,6 @@ from functools import cache
 
 from benchmarks.insertion.cycles import CycleCell
 from benchmarks.insertion.farmed import shipped_cell
-from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
-from cellctl.processes.peg_in_hole.recipe import PegRecipe
-from cellctl.processes.peg_in_hole.run import contact_settings
-from cellctl.processes.peg_in_hole.settings import PegSettings
 
 _SOFT_N_MM, _STIFF_N_MM = 98.0, 880.0
 """Stiffness times a dead time of 27 ms: 2.6e3 and 2.4e4 N·s/m."""
@@ -47,13 +43,10 @@ def tight_pin_cell(name: str) -> CycleCell:
     recipe["fit"] |= {"clearance_mm": pin.clearance_mm, **_NO_CHAMFERS}
     settings = shipped.settings.model_dump(exclude_unset=True)
     settings["stiffness_n_mm"] = pin.stiffness_n_mm
-    told, known = PegRecipe.model_validate(recipe), PegSettings.model_validate(settings)
-    plan = cycle_plan(told, known)
-    contact_settings(told, plan, known).check()
     true = shipped.scenario
     bore_mm = true.fit.peg_radius_mm + pin.clearance_mm
     fit = true.fit.model_copy(update={"bore_radius_mm": bore_mm, **_NO_CHAMFERS})
     arm = 1e3 * pin.stiffness_n_mm
     compliance = true.compliance.model_copy(update={"axial_n_m": arm, "lateral_n_m": arm})
     scenario = true.model_copy(update={"fit": fit, "compliance": compliance})
-    return CycleCell(scenario, told, known, plan)
+    return CycleCell.told(scenario, recipe, settings)

@@ -10,10 +10,6 @@ from benchmarks.insertion.farmed import shipped_cell
 from benchmarks.insertion.fault_cycles import CycleFault, injected
 from benchmarks.insertion.random_tasks.draws import Draws
 from benchmarks.insertion.random_tasks.truths import Truth, injection_of
-from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
-from cellctl.processes.peg_in_hole.recipe import PegRecipe
-from cellctl.processes.peg_in_hole.run import contact_settings
-from cellctl.processes.peg_in_hole.settings import PegSettings
 from fakes.scenes.socket.scenario import SocketScenario
 
 _FACE_CLEAR_MM = 1.0
@@ -165,11 +161,7 @@ def _cell(
         update={"noise_n": noise_n, "noise_nm": 0.025 * noise_n}
     )
     scenario = true.model_copy(update={"peg": peg, "force_sensors": {peg.force_sensor: sensor}})
-    told = PegRecipe.model_validate(recipe)
-    known = PegSettings.model_validate(settings)
-    plan = cycle_plan(told, known)
-    contact_settings(told, plan, known).check()
-    return CycleCell(scenario, told, known, plan)
+    return CycleCell.told(scenario, recipe, settings)
 
 
 def _true_scenario(

@@ -18,8 +18,9 @@ X, Y, Z, TILT_X, TILT_Y, YAW = range(6)
 _SHARE_OF_STEP = 0.45
 """Share of the step that the controller accepts from tick to tick, for the path."""
 _SHIFT_SHARE, _TURN_SHARE = 0.15, 0.2
-"""The same for each axis that gives way: all six together may then take another half, since three
-axes at a right angle add up by the root of three."""
+"""The same for each axis that gives way. Three shifts at a right angle add up by the root of three,
+the two turns that swing the flange about the tip by the root of two: with the path 0.99 of the step
+where the tip lies on the axis of the flange, and the turn about that axis swings nothing."""
 _ABOUT_AXES = 0.3
 """Share of the greatest turn from tick to tick for each axis that gives way."""
 

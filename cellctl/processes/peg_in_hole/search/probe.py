@@ -155,7 +155,9 @@ class TouchProbe:
             if met is Met.NOTHING or not self._on_edge(last, met):
                 break
             reached_m = depth_m(last)
-            await self._let_go()
+            # On a chamfer a stiff arm holds the peg where it stands; let go, it slides in. That
+            # nothing carries it then is what is hoped for.
+            await self.let_go(LostSupport(self.press_n))
             last, met = await self._sinks()
             # On a chamfer it slides in further each time; on a scratch it does not.
             if met is not Met.NOTHING and depth_m(last) - reached_m < STANDS_M:
@@ -189,13 +191,6 @@ class TouchProbe:
         hold_s = self.parameters.entry_time.value
         pressed = await self.motions.press(self.press_n, hold_s, condition)
         return pressed.last, met
-
-    async def _let_go(self) -> None:
-        """On a chamfer a stiff arm holds the peg where it stands; let go, it slides in.
-
-        That nothing carries it then is what is hoped for.
-        """
-        await self.let_go(LostSupport(self.press_n))
 
     async def let_go(self, until: Stop) -> ContactSample:
         """Press on, and let the peg go to where nothing pushes it sideways."""

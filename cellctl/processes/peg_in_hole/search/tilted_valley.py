@@ -93,8 +93,8 @@ class _Valley:
         self._speed = probe.parameters.touch_speed.value
         self._reach_m = 2 * probe.task.fit.bore_radius_m
         self._here_m: Array = np.zeros(2)
-        self._fallen = False
-        self._against = False
+        self._arrived = False
+        """In the hole, or against its far wall."""
 
     async def follow(self, at_m: Array, dip_m: float) -> Array | None:
         """Bottom centre (2,) at the wall, or where the peg fell in; None where no valley is."""
@@ -103,12 +103,12 @@ class _Valley:
             if back_m:
                 at_m = await self._step_to(at_m - back_m * _TOWARDS, _BACK_SPEEDS)
             middle_m = await self._middle(at_m, half_m)
-            if self._fallen:
+            if self._arrived:
                 return self._here_m
             if middle_m is None:
                 return None
             wall_m = await self._wall(await self._step_to(middle_m))
-            if wall_m is None or self._fallen or self._against:
+            if wall_m is None or self._arrived:
                 return wall_m
             at_m = wall_m
             half_m = 0.3 * self._full_m
@@ -124,8 +124,8 @@ class _Valley:
             if motion.ended is Ended.FORCE and self._near_hole(motion.last):
                 # A stiff arm cannot climb a flank that is so steep: the peg finds the middle.
                 return await self._let_go()
-            self._fallen = beyond.fallen
-            if self._fallen or motion.ended is Ended.TRAVEL:
+            self._arrived = beyond.fallen
+            if self._arrived or motion.ended is Ended.TRAVEL:
                 return None
             self._probe.trace.note(motion.last, Felt.EDGE)
             sides_m.append(self._here_m)
@@ -140,7 +140,7 @@ class _Valley:
             stop = _WallReached(self)
             end_m = begin_m + self._reach_m * _TOWARDS
             motion = await self._slide(end_m, 1.25 * self._speed, stop)
-            self._fallen = stop.fallen
+            self._arrived = stop.fallen
             against = _ahead(motion.last) and self._near_hole(motion.last)
             if motion.ended is not Ended.FORCE or against:
                 break
@@ -149,12 +149,13 @@ class _Valley:
         self._probe.trace.note(motion.last, Felt.WALL)
         if motion.ended is Ended.TRAVEL:
             return None
-        if self._fallen:
+        if self._arrived:
             return self._here_m
-        self._against = motion.ended is Ended.FORCE
-        if self._against:
+        if motion.ended is Ended.FORCE:
             # What stands in its way is the far wall of the hole, with the mouth below the peg.
-            return await self._let_go()
+            await self._let_go()
+            self._arrived = True
+            return self._here_m
         # The arm had gone on while the average followed and the stop took effect.
         late_s = DETECTION_S + self._probe.task.cell.dead_time_s / 2
         return np.asarray(self._here_m - 1.25 * self._speed * late_s * _TOWARDS)
@@ -163,7 +164,7 @@ class _Valley:
         """Where the peg comes to rest (2,) when nothing holds it sideways."""
         rests = await self._probe.let_go(self._rests)
         self._here_m = rests.task_position_tip_m[:2].copy()
-        self._fallen = self.fell_in(self.dip_m(rests))
+        self._arrived = self.fell_in(self.dip_m(rests))
         return self._here_m
 
     def _rests(self, sample: ContactSample) -> bool:
