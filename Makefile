@@ -128,6 +128,7 @@ bench-power-cut: venv
 
 # On a computer that has nothing else to do. From the disk and not from memory, by root: --from-disk.
 .PHONY: bench-start
+bench-start: export PYTHONDONTWRITEBYTECODE =
 bench-start: venv
 	$(BIN)/python -m benchmarks.cold_start $(ARGS)
 

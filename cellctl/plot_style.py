@@ -5,6 +5,9 @@ mean something else have another marker.
 
 Reports take SVG, calibrations PNG; both are drawn inside ``style()``, which also serves as a
 decorator of the function that draws.
+
+matplotlib is loaded by whoever draws, and by importing a drawing it is not: the daemon knows every
+picture and has its workers draw them, and would start a quarter later for it.
 """
 
 import io
@@ -12,15 +15,15 @@ import itertools
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import matplotlib as mpl
 import numpy as np
 from cycler import cycler
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
 
@@ -73,12 +76,16 @@ _SETTINGS: dict[Any, Any] = {
 @contextmanager
 def style() -> Iterator[None]:
     """The look, for the figures made inside."""
-    with mpl.rc_context(_SETTINGS):
+    from matplotlib import rc_context
+
+    with rc_context(_SETTINGS):
         yield
 
 
-def to_svg(figure: Figure) -> str:
+def to_svg(figure: "Figure") -> str:
     """The figure as an ``<svg>`` element; the same figure gives the same text."""
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     FigureCanvasSVG(figure)
     stream = io.StringIO()
     figure.savefig(stream, format="svg", metadata={"Date": None, "Creator": None})
@@ -93,7 +100,7 @@ def line(colour: str) -> dict[str, Any]:
     return {"color": colour, "linestyle": DASHES[colour]}
 
 
-def label_line(axes: Axes, y: float, text: str, colour: str) -> None:
+def label_line(axes: "Axes", y: float, text: str, colour: str) -> None:
     """A horizontal line with its meaning written on it, at its left end."""
     axes.axhline(y, **line(colour), linewidth=1.0, zorder=1)
     axes.annotate(

@@ -1,6 +1,6 @@
 """Drivers and processes by name: entry points, loaded only when a cell file names them."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -73,11 +73,18 @@ def _loaded(group: str, name: str) -> object:
     raise UnknownDriver(f"no {group} named '{name}'; {nearest(name, known)}installed: {listed}")
 
 
-@cache
 def installed(group: str) -> tuple[EntryPoint, ...]:
-    """Entry points of one kind; what is installed does not change while a program runs.
+    """Entry points of one kind."""
+    return every().get(group, ())
 
-    Remembered, because Python reads the metadata of every installed package for the answer, and a
-    cell file asks dozens of times.
+
+@cache
+def every() -> Mapping[str, tuple[EntryPoint, ...]]:
+    """Entry points of all kinds of ours; what is installed does not change while a program runs.
+
+    Remembered, because Python reads the metadata of every installed package for the answer, for one
+    kind as for all, and a cell file asks dozens of times.
     """
-    return tuple(entry_points(group=group))
+    found = entry_points()
+    ours = (group for group in found.groups if group.startswith("cellctl."))
+    return {group: tuple(found.select(group=group)) for group in ours}

@@ -2,30 +2,34 @@
 
 import io
 from collections.abc import Sequence
-
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from typing import TYPE_CHECKING
 
 from cellctl.calibration.checks import LimitCheck
 from cellctl.plot_style import ACCENT, GOOD, LIMIT, SECOND
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
 TEXT_SIZE = 9
 
 
-def new_figure(width: float = 12.0, height: float = 8.0) -> Figure:
+def new_figure(width: float = 12.0, height: float = 8.0) -> "Figure":
     """A figure that needs no display and leaves no global state."""
+    from matplotlib.figure import Figure
+
     # Not ``pyplot``: it keeps every figure until it is closed, and the workers live as long as the
     # daemon.
     return Figure(figsize=(width, height), layout="constrained")
 
 
-def title(figure: Figure, text: str, *, passed: bool) -> None:
+def title(figure: "Figure", text: str, *, passed: bool) -> None:
     """Heading with the verdict."""
     verdict = "passed" if passed else "NOT PASSED"
     figure.suptitle(f"{text}: {verdict}", color=GOOD if passed else LIMIT)
 
 
-def list_checks(axes: Axes, checks: Sequence[LimitCheck], warnings: Sequence[str]) -> None:
+def list_checks(axes: "Axes", checks: Sequence[LimitCheck], warnings: Sequence[str]) -> None:
     """The figures against their limits and the warnings, as text."""
     axes.axis("off")
     step = 0.95 / max(len(checks) + len(warnings), 8)
@@ -38,7 +42,7 @@ def list_checks(axes: Axes, checks: Sequence[LimitCheck], warnings: Sequence[str
         axes.text(0.0, height, text, color=SECOND, va="top", fontsize=TEXT_SIZE, wrap=True)
 
 
-def bars(axes: Axes, names: Sequence[str], values: Sequence[float], unit: str) -> None:
+def bars(axes: "Axes", names: Sequence[str], values: Sequence[float], unit: str) -> None:
     """One bar per name, labelled below; beyond 40 bars the names would not be legible."""
     axes.bar(range(len(values)), values, color=ACCENT)
     axes.set_ylabel(unit)
@@ -47,7 +51,7 @@ def bars(axes: Axes, names: Sequence[str], values: Sequence[float], unit: str) -
         axes.set_xticks(range(len(names)), names, rotation=90, fontsize=7)
 
 
-def as_png(figure: Figure) -> bytes:
+def as_png(figure: "Figure") -> bytes:
     """The picture as a file's content."""
     buffer = io.BytesIO()
     figure.savefig(buffer, format="png", dpi=110)

@@ -27,6 +27,9 @@ def run(
 ) -> None:
     """Run the cell until SIGTERM or Ctrl-C; motion is stopped before the process ends."""
     # Imported here, so that ``--help`` and the other commands need not load the daemon.
+    from cellctl.daemon.heap import hold_collections
+
+    hold_collections()
     from cellctl.daemon.app import Overrides, serve
     from cellctl.daemon.journal import journal_or
 

@@ -24,7 +24,7 @@ from cellctl.cell.run_notes import RunNotes
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.cell import Plc
-from cellctl.daemon.heap import give_back_large_blocks
+from cellctl.daemon.heap import collect_what_comes, give_back_large_blocks
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.vitals import DaemonVitals
@@ -107,6 +107,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # The last thing on the stack is the first to happen: the arm is stopped while every link
         # still stands and the fault is known.
         stack.push_async_exit(partial(_end, unit, store, told))
+        collect_what_comes()
         watches = supervise(cell, unit, plc, publisher, store, vitals=vitals)
         await until_told(stop, _work(cell, unit, watches, plc))
         _log.info("asked to end")

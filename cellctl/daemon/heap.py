@@ -1,6 +1,7 @@
-"""Memory of images and force curves goes back to the system as soon as they are written."""
+"""Memory of the daemon: what comes at the start stays, images and force curves go back at once."""
 
 import ctypes
+import gc
 
 LARGE_BYTES = 2**20
 """Blocks of this size and more come from the system one by one and go back whole. An image is 5 MB;
@@ -21,3 +22,20 @@ def give_back_large_blocks() -> bool:
     if not hasattr(allocator, "mallopt"):
         return False
     return bool(allocator.mallopt(_M_MMAP_THRESHOLD, LARGE_BYTES))
+
+
+def hold_collections() -> None:
+    """No search for unused cycles while the daemon is loaded: next to nothing of it is unused, and
+    the searches take a tenth of the start."""
+    gc.disable()
+
+
+def collect_what_comes() -> None:
+    """Search again, but not through what is there already; nothing unless searches were held.
+
+    Modules, their classes and the cell's configuration stay as long as the daemon does. Each full
+    search would go through all of them, while the event loop stands.
+    """
+    if not gc.isenabled():
+        gc.freeze()
+        gc.enable()

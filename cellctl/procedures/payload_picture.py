@@ -1,12 +1,16 @@
 """The residuals of a payload identification as a picture."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, new_figure
 from cellctl.force.gravity.payload_result import PayloadResult
 from cellctl.geometry.pose import Array
 from cellctl.plot_style import ACCENT, INK, MUTED, SECOND, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @style()
@@ -30,7 +34,7 @@ def residual_picture(result: PayloadResult) -> bytes:
     return as_png(figure)
 
 
-def _bars(axes: Axes, rigid: Array, affine: Array) -> None:
+def _bars(axes: "Axes", rigid: Array, affine: Array) -> None:
     poses = np.arange(1, len(rigid) + 1)
     axes.bar(poses - 0.2, rigid, width=0.4, color=SECOND, label="rigid12")
     axes.bar(poses + 0.2, affine, width=0.4, color=ACCENT, label="affine24")

@@ -45,7 +45,7 @@ def forgotten() -> Iterator[None]:
 
 
 def _forget() -> None:
-    plugins.installed.cache_clear()
+    plugins.every.cache_clear()
     fault_catalogue.fault_modules.cache_clear()
 
 

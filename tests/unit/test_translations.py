@@ -246,7 +246,7 @@ def test_a_translation_of_other_english_is_not_told_and_its_digest_is_named(
 
 
 def forget() -> None:
-    plugins.installed.cache_clear()
+    plugins.every.cache_clear()
     fault_catalogue.fault_modules.cache_clear()
     labels.cache_clear()
     translated.cache_clear()

@@ -1,18 +1,22 @@
 """What every calibration with a board draws: residuals over the image, the board as found."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.geometry.pose import MM, Array
 from cellctl.plot_style import ACCENT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _MAX_ARROWS = 2500
 _ARROW_SCALE = 400.0
 """Image pixels per pixel of residual."""
 
 
-def draw_residuals(axes: Axes, field: Array, image_size: tuple[int, int], title: str) -> None:
+def draw_residuals(axes: "Axes", field: Array, image_size: tuple[int, int], title: str) -> None:
     """Arrows of the residuals, columns u, v, du, dv in px, in an image of width and height."""
     # More arrows would cover each other, and a pattern of the residuals shows with fewer.
     chosen = field[:: max(1, len(field) // _MAX_ARROWS)]
@@ -32,7 +36,7 @@ def draw_residuals(axes: Axes, field: Array, image_size: tuple[int, int], title:
     axes.set(xlim=(0, width), ylim=(height, 0), xlabel="px")
 
 
-def draw_board(axes: Axes, board: CalibrationBoard, board_m: Array) -> None:
+def draw_board(axes: "Axes", board: CalibrationBoard, board_m: Array) -> None:
     """Heights of the corners, shape (n, 3), over the board."""
     shape = (board.rows, board.columns)
     x, y, z = (board_m[:, axis].reshape(shape) / MM for axis in range(3))

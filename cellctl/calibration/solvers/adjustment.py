@@ -4,7 +4,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from cellctl.errors.calibration import IllConditioned, SolveFailed
 from cellctl.geometry.pose import Array
@@ -26,6 +25,9 @@ class Adjustment:
 
 def weighted_least_squares(residuals: Callable[[Array], Array], start: Array) -> Adjustment:
     """Minimise; raises ``SolveFailed`` or ``IllConditioned``."""
+    # Loaded by whoever solves, which in the daemon are its workers.
+    from scipy.optimize import least_squares
+
     # Central differences: the covariance comes from this Jacobian, so its accuracy counts.
     result = least_squares(residuals, start, jac="3-point", x_scale="jac", xtol=1e-13, ftol=1e-13)
     if not result.success:

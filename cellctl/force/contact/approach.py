@@ -15,6 +15,9 @@ from cellctl.errors.force import ContactPlanInvalid
 from cellctl.force.contact.compliance import NO_OFFSET, LateralOffset
 from cellctl.force.contact.touch_detector import Cusum
 
+_SPEED_RATIO = 1e-6
+"""Of the speed, within which the greatest one is found."""
+
 
 @dataclass(frozen=True, slots=True)
 class ApproachFigures:
@@ -113,17 +116,18 @@ def approach_speed(
             f"no approach speed keeps the peak below {allowed_peak_n:.1f} N: touch threshold and "
             f"tare alone take {least_n:.1f} N"
         )
-    # Loaded here: it takes longer than all else that `cellctl check` loads for a mating, and most
-    # plans need it once.
-    from scipy.optimize import brentq
-
-    # The root finder needs a change of sign, which a contact that is soft enough does not have.
     if peak_at(greatest_m_s, figures).peak_n <= allowed_peak_n:
         return peak_at(greatest_m_s, figures)
-    speed = brentq(
-        lambda v: peak_at(v, figures).peak_n - allowed_peak_n, slowest_m_s, greatest_m_s, rtol=1e-6
-    )
-    return peak_at(float(speed), figures)
+    # Halved by hand, which takes some thirty peaks: the root finders of scipy take longer to load
+    # than all else of a check, and the side of the limit that one of them ends on is left to it.
+    slower_m_s, faster_m_s = slowest_m_s, greatest_m_s
+    while faster_m_s - slower_m_s > _SPEED_RATIO * faster_m_s:
+        middle_m_s = (slower_m_s + faster_m_s) / 2.0
+        if peak_at(middle_m_s, figures).peak_n <= allowed_peak_n:
+            slower_m_s = middle_m_s
+        else:
+            faster_m_s = middle_m_s
+    return peak_at(slower_m_s, figures)
 
 
 def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.optimize import least_squares
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.lens import undistort
@@ -48,6 +47,9 @@ def plane_from_edges(head: StereoHead, rois: Sequence[tuple[RimRoi, RimRoi]]) ->
 
     None when their edges do not tell. ``rois`` look at each hole with any plausible normal.
     """
+    # Loaded by whoever fits, which in the daemon are its workers.
+    from scipy.optimize import least_squares
+
     rims = []
     for left, right in rois:
         rays = _edge_rays(left), _edge_rays(right)

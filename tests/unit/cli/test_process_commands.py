@@ -45,10 +45,10 @@ def acme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: acme-pictures\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text(POINTS)
     monkeypatch.syspath_prepend(str(tmp_path))
-    plugins.installed.cache_clear()
+    plugins.every.cache_clear()
     yield
     sys.modules.pop("acme_pictures", None)
-    plugins.installed.cache_clear()
+    plugins.every.cache_clear()
 
 
 def invoke(app: Any, *words: str) -> Any:

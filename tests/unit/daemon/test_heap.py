@@ -44,3 +44,21 @@ def test_images_that_are_let_go_leave_nothing_behind() -> None:
     assert LARGE_BYTES < 5_000_000
     assert left_mb("fixed") < 15.0, "41 small objects of 0.1 MB, and what the interpreter takes"
     assert left_mb("as it comes") > 80.0, "else the test shows nothing"
+
+
+HELD = """
+import gc
+from cellctl.daemon.heap import collect_what_comes, hold_collections
+collect_what_comes()
+print(gc.isenabled(), gc.get_freeze_count())
+hold_collections()
+print(gc.isenabled())
+loaded = [[] for _ in range(1000)]
+collect_what_comes()
+print(gc.isenabled(), gc.get_freeze_count() > 1000)
+"""
+
+
+def test_searches_are_held_at_the_start_and_leave_out_what_it_loaded() -> None:
+    ran = subprocess.run([sys.executable, "-c", HELD], capture_output=True, text=True, check=True)
+    assert ran.stdout.splitlines() == ["True 0", "False", "True True"]

@@ -1,13 +1,17 @@
 """The evidence of a base-frame calibration as one picture."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.calibration.solvers.base_frame.axis_fit import AxisFit, perpendicular
 from cellctl.calibration.solvers.base_frame.base_frame import BaseFrameResult
 from cellctl.geometry.pose import MM
 from cellctl.plot_style import INK, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @style()
@@ -25,7 +29,7 @@ def base_frame_picture(result: BaseFrameResult) -> bytes:
     return as_png(figure)
 
 
-def _circles(axes: Axes, fit: AxisFit) -> None:
+def _circles(axes: "Axes", fit: AxisFit) -> None:
     first, second = perpendicular(fit.direction)
     relative = (fit.points_m - fit.point_m) / MM
     turn = np.linspace(0, 2 * np.pi, 200)
@@ -41,7 +45,7 @@ def _circles(axes: Axes, fit: AxisFit) -> None:
     axes.legend(fontsize=8, loc="center", ncols=2)
 
 
-def _residuals(axes: Axes, result: BaseFrameResult) -> None:
+def _residuals(axes: "Axes", result: BaseFrameResult) -> None:
     for axis in ("A1", "A2"):
         chosen = [(name, value) for name, value in result.residuals_m.items() if axis in name]
         stops = [int(name.split(" ")[1].split(":")[0]) for name, _ in chosen]

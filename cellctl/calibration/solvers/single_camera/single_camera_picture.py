@@ -1,12 +1,16 @@
 """The evidence of the calibration of one camera as one picture."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.boards.board_drawing import draw_board, draw_residuals
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.plot_style import ACCENT, LIMIT, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @style()
@@ -22,7 +26,7 @@ def single_camera_picture(result: SingleCameraResult) -> bytes:
     return as_png(figure)
 
 
-def _views(axes: Axes, result: SingleCameraResult) -> None:
+def _views(axes: "Axes", result: SingleCameraResult) -> None:
     places = np.arange(len(result.views))
     colours = [ACCENT if view.used else LIMIT for view in result.views]
     axes.bar(places, [view.rms_px for view in result.views], color=colours)

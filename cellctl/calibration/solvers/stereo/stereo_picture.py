@@ -1,12 +1,16 @@
 """The evidence of a stereo calibration as one picture."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.boards.board_drawing import draw_board, draw_residuals
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 from cellctl.plot_style import LIMIT, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @style()
@@ -27,7 +31,7 @@ def stereo_picture(result: StereoResult) -> bytes:
     return as_png(figure)
 
 
-def _scatter(axes: Axes, result: StereoResult) -> None:
+def _scatter(axes: "Axes", result: StereoResult) -> None:
     for name, field in (("left", result.left_residuals), ("right", result.right_residuals)):
         axes.plot(field[:, 2], field[:, 3], ".", markersize=1.5, label=name)
     axes.set(title=f"residuals, rms {result.head.rms_px:.4f} px", aspect="equal")
@@ -35,7 +39,7 @@ def _scatter(axes: Axes, result: StereoResult) -> None:
     axes.legend(fontsize=8, markerscale=6)
 
 
-def _views(axes: Axes, result: StereoResult) -> None:
+def _views(axes: "Axes", result: StereoResult) -> None:
     places = np.arange(len(result.views))
     axes.bar(places - 0.2, [view.left_rms_px for view in result.views], 0.4, label="left")
     axes.bar(places + 0.2, [view.right_rms_px for view in result.views], 0.4, label="right")

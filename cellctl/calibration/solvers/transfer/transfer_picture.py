@@ -1,12 +1,16 @@
 """The evidence of a board transfer as one picture."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, bars, list_checks, new_figure, title
 from cellctl.calibration.solvers.transfer.board_transfer import TransferResult
 from cellctl.geometry.pose import MM
 from cellctl.plot_style import ACCENT, GOOD, LIMIT, style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @style()
@@ -40,7 +44,7 @@ def _short(name: str) -> str:
     return f"{number}.{placement.rsplit(' ', 1)[-1]} {disc.split(' ')[-1]}"
 
 
-def _from_above(axes: Axes, result: TransferResult) -> None:
+def _from_above(axes: "Axes", result: TransferResult) -> None:
     poses = (("B", None), ("C1", result.base_T_c1), ("C2", result.base_T_c2))
     for name, pose in poses:
         origin = np.zeros(3) if pose is None else pose.pose.translation / MM

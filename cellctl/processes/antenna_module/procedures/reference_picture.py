@@ -1,15 +1,18 @@
 """The evidence of a taught reference as one picture."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.checks import Checks, all_passed
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.geometry.pose import Array
 from cellctl.plot_style import ACCENT, style
 from cellctl.processes.antenna_module.chain.reference.reference_looks import ReferenceLooks
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _UM = 1e-6
 
@@ -28,7 +31,7 @@ def reference_picture(looks: ReferenceLooks, checks: Checks) -> bytes:
     return as_png(figure)
 
 
-def _scatter(axes: Axes, places_m: Sequence[Array] | Array) -> None:
+def _scatter(axes: "Axes", places_m: Sequence[Array] | Array) -> None:
     off_um = (np.asarray(places_m) - np.mean(places_m, axis=0)) / _UM
     axes.plot(off_um[:, 0], off_um[:, 1], "o", color=ACCENT)
     reach_um = 1.2 * max(10.0, float(np.abs(off_um).max()))

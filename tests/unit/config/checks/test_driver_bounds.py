@@ -56,12 +56,12 @@ def omega(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: omega-arm\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[cellctl.robot]\nomega = omega_arm.driver:OmegaRobot\n")
     monkeypatch.syspath_prepend(str(tmp_path))
-    plugins.installed.cache_clear()
+    plugins.every.cache_clear()
     fault_catalogue.fault_modules.cache_clear()
     yield
     for name in ("omega_arm", "omega_arm.driver"):
         sys.modules.pop(name, None)
-    plugins.installed.cache_clear()
+    plugins.every.cache_clear()
     fault_catalogue.fault_modules.cache_clear()
 
 

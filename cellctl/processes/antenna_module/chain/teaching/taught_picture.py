@@ -1,13 +1,17 @@
 """The evidence of a plug correction as one picture."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-from matplotlib.axes import Axes
 
 from cellctl.calibration.drawing import as_png, list_checks, new_figure, title
 from cellctl.geometry.pose import MM, Array
 from cellctl.plot_style import LIMIT, style
 from cellctl.processes.antenna_module.chain.teaching.taught import PlugCorrection, TaughtSlot
 from cellctl.processes.antenna_module.chain.teaching.teaching import TeachLimits
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _UM = 1e-6
 
@@ -37,7 +41,7 @@ def taught_picture(correction: PlugCorrection, limits: TeachLimits | None = None
     return as_png(figure)
 
 
-def _draw(plane: Axes, yaw: Axes, slot: TaughtSlot) -> None:
+def _draw(plane: "Axes", yaw: "Axes", slot: TaughtSlot) -> None:
     off = slot.from_mean
     x, y = _circle(slot.scatter_m / _UM)
     (scatter,) = plane.plot(x, y, label=f"slot {slot.name}, {slot.plugs} plugs, 1 σ")
@@ -49,7 +53,7 @@ def _draw(plane: Axes, yaw: Axes, slot: TaughtSlot) -> None:
     yaw.set_xticks(numbers)
 
 
-def _bound(axes: Axes, correction: PlugCorrection, limit_um: float) -> None:
+def _bound(axes: "Axes", correction: PlugCorrection, limit_um: float) -> None:
     """The standard deviation per axis that is allowed, and room for what is beyond it."""
     axes.plot(*_circle(limit_um), "--", color=LIMIT, label="limit, 1 σ")
     farthest_m = max(np.abs(slot.from_mean[:, :2]).max(initial=0.0) for slot in correction.slots)
