@@ -17,8 +17,6 @@ from cellctl.records.run_filter import AlarmFilter
 from cellctl.records.store import RunStore
 
 router = APIRouter(tags=["alarms"])
-_COUNTED = 1000
-"""More alarms in an hour than a person can read are as many as these."""
 
 
 class AlarmSearch(BaseModel):
@@ -59,7 +57,7 @@ async def alarms(
 
     def read(store: RunStore) -> tuple[list[Alarm], int]:
         found = store.alarms(search.wanted(), search.limit)
-        return found, len(store.alarms(hour, _COUNTED))
+        return found, store.alarm_count(hour)
 
     found, last_hour = await request.app.state.parts.archive.ask(read)
     return alarm_list(found, last_hour, language)

@@ -106,7 +106,7 @@ async def outcome(
     From the audit log, so it holds over restarts. 404 while nothing is on record: the cell has not
     taken it, or only just, and a Stop or Abort is obeyed before it is written down.
     """
-    found = await request.app.state.parts.archive.ask(lambda store: store.audit_with("key", key))
+    found = await request.app.state.parts.archive.ask(lambda store: store.audit_of_command(key))
     if not found:
         raise Problem(404, "command-unknown", "there is no record of a command with this key")
     return command_told(found[-1])

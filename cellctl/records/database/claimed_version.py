@@ -21,7 +21,7 @@ _CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {
     3: (("ledger", "name"), ("gauges", "gauge_id"), ("ledger_head", "length")),
 }
 """Columns by the schema that brought them."""
-_KINDS_BEFORE = {3: frozenset({RUN, GAUGE}), 4: KINDS.keys() - {PROGRESS}}
+_KINDS_BEFORE = {3: frozenset({RUN, GAUGE}), 4: KINDS.keys() - {PROGRESS}, 5: KINDS.keys()}
 """All that earlier schemas than this one have sealed."""
 
 

@@ -141,5 +141,15 @@ def _from_3_to_4(connection: Connection) -> None:
             index.create(connection, checkfirst=True)
 
 
-_STEPS: tuple[Callable[[Connection], None], ...] = (_from_1_to_2, _from_2_to_3, _from_3_to_4)
+def _from_4_to_5(connection: Connection) -> None:
+    """An index finds what became of a command of the page among years of audit lines."""
+    _create_missing(connection)
+
+
+_STEPS: tuple[Callable[[Connection], None], ...] = (
+    _from_1_to_2,
+    _from_2_to_3,
+    _from_3_to_4,
+    _from_4_to_5,
+)
 """The first leads from schema 1 to 2."""

@@ -4,13 +4,14 @@ from collections.abc import Iterator
 from datetime import datetime
 from typing import Any, TypeVar
 
-from sqlalchemy import func, or_, select
+from sqlalchemy import ColumnElement, func, literal_column, or_, select
 from sqlalchemy.orm import Session
 
 from cellctl.errors.records import ArtefactDamaged
 from cellctl.records.database import schema_1
 from cellctl.records.database.rows import existing_run, to_entry
 from cellctl.records.database.schema import (
+    COMMAND_KEY,
     AlarmRow,
     ArtefactRow,
     AuditRow,
@@ -70,31 +71,38 @@ def newest_audit(session: Session, limit: int) -> list[AuditEntry]:
     return [to_entry(row, AuditEntry) for row in found]
 
 
-def audit_with(session: Session, key: str, value: str) -> list[AuditEntry]:
-    """Entries of the audit log whose detail has this text under this key, oldest first."""
-    # The key goes in as a value too: it is no part of the SQL.
-    same = func.json_extract(AuditRow.detail, f"$.{key}") == value
+def audit_of_command(session: Session, key: str) -> list[AuditEntry]:
+    """Entries of the audit log about the command of the page with this key, oldest first."""
+    same = literal_column(COMMAND_KEY) == key
     found = session.scalars(select(AuditRow).where(same).order_by(AuditRow.id))
     return [to_entry(row, AuditEntry) for row in found]
 
 
 def alarms(session: Session, wanted: AlarmFilter, limit: int) -> list[Alarm]:
     """The newest of the wanted alarms, newest first."""
-    query = select(AlarmRow).order_by(AlarmRow.id.desc()).limit(limit)
-    if wanted.active is not None:
-        never = AlarmRow.acknowledged.is_(None)
-        query = query.where(never if wanted.active else ~never)
-    if wanted.before is not None:
-        query = query.where(AlarmRow.id < wanted.before)
-    if wanted.number is not None:
-        query = query.where(AlarmRow.number == wanted.number)
-    if wanted.run is not None:
-        query = query.where(AlarmRow.run == wanted.run)
-    if wanted.since is not None:
-        query = query.where(AlarmRow.time >= wanted.since)
-    if wanted.until is not None:
-        query = query.where(AlarmRow.time < wanted.until)
+    query = select(AlarmRow).where(*_conditions(wanted)).order_by(AlarmRow.id.desc()).limit(limit)
     return [to_entry(row, Alarm) for row in session.scalars(query)]
+
+
+def alarm_count(session: Session, wanted: AlarmFilter) -> int:
+    """How many alarms are wanted."""
+    return session.scalars(select(func.count(AlarmRow.id)).where(*_conditions(wanted))).one()
+
+
+def _conditions(wanted: AlarmFilter) -> Iterator[ColumnElement[bool]]:
+    never = AlarmRow.acknowledged.is_(None)
+    if wanted.active is not None:
+        yield never if wanted.active else ~never
+    if wanted.before is not None:
+        yield AlarmRow.id < wanted.before
+    if wanted.number is not None:
+        yield AlarmRow.number == wanted.number
+    if wanted.run is not None:
+        yield AlarmRow.run == wanted.run
+    if wanted.since is not None:
+        yield AlarmRow.time >= wanted.since
+    if wanted.until is not None:
+        yield AlarmRow.time < wanted.until
 
 
 def alarm(session: Session, number: int) -> Alarm | None:

@@ -9,7 +9,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from sqlalchemy import BigInteger, Enum, ForeignKey, Index, Integer, String
+from sqlalchemy import BigInteger, Enum, ForeignKey, Index, Integer, String, text
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column
 
 from cellctl.records.database.column_types import PassComponents, PlainJson, Utc
@@ -188,10 +188,21 @@ class GaugeRow(Base):
     """Id of the plug gauge itself; None in rows of schema 1 and 2."""
 
 
+COMMAND_KEY = "json_extract(detail, '$.key')"
+"""Key of the command of the page that an audit line is about. An index serves whoever asks with
+these very words."""
+
+
 class AuditRow(Base):
     """Who did what. Rows are only ever appended."""
 
     __tablename__ = "audit"
+    # Of SQLite alone: nobody asks a fleet's database what became of a command of a moment ago.
+    __table_args__ = (
+        Index(
+            "ix_audit_command_key", text(COMMAND_KEY), sqlite_where=text(f"{COMMAND_KEY} NOT NULL")
+        ).ddl_if(dialect="sqlite"),
+    )
     id: Mapped[int] = mapped_column(primary_key=True)
     time: Mapped[datetime]
     actor: Mapped[str]

@@ -43,15 +43,20 @@ class StoredRecords:
         with self._database.read() as session:
             return reading.newest_audit(session, limit)
 
-    def audit_with(self, key: str, value: str) -> list[AuditEntry]:
-        """Entries of the audit log whose detail has this text under this key, oldest first."""
+    def audit_of_command(self, key: str) -> list[AuditEntry]:
+        """Entries of the audit log about the command of the page with this key, oldest first."""
         with self._database.read() as session:
-            return reading.audit_with(session, key, value)
+            return reading.audit_of_command(session, key)
 
     def alarms(self, wanted: AlarmFilter, limit: int) -> list[Alarm]:
         """The newest of the wanted alarms, newest first."""
         with self._database.read() as session:
             return reading.alarms(session, wanted, limit)
+
+    def alarm_count(self, wanted: AlarmFilter) -> int:
+        """How many alarms are wanted."""
+        with self._database.read() as session:
+            return reading.alarm_count(session, wanted)
 
     def alarm(self, number: int) -> Alarm | None:
         """The alarm with this id; None where there is none."""

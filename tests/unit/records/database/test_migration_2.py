@@ -13,6 +13,7 @@ import pytest
 from cellctl.errors.records import StoreContradictsVersion
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.migration import backup_of
+from cellctl.records.database.schema import COMMAND_KEY
 from tests.unit.records.conftest import start
 
 OLD = Path(__file__).parents[3] / "data" / "store-v2"
@@ -145,3 +146,30 @@ def test_a_store_of_today_that_claims_schema_3_is_refused(of_today: Path) -> Non
     execute(of_today, "UPDATE runs SET record_schema = 3")
     with pytest.raises(StoreContradictsVersion, match="ledger entries of the kind progress"):
         RunStore(of_today)
+
+
+def test_a_store_of_schema_4_gets_the_index_of_commands(tmp_path: Path) -> None:
+    store = RunStore(tmp_path)
+    store.audit("page:anna@panel-1", "hold", {"key": "press-0001"})
+    store.close()
+    execute(tmp_path, "DROP INDEX ix_audit_command_key", "PRAGMA user_version = 4")
+    store = RunStore(tmp_path)
+    store.audit("page:anna@panel-1", "stop", {"key": "press-0002"})
+    store.audit("OP-7", "reset")
+    for key, action in (("press-0001", "hold"), ("press-0002", "stop")):
+        assert [entry.action for entry in store.audit_of_command(key)] == [action]
+    assert store.verify() == []
+    store.close()
+    assert backup_of(tmp_path / "store.sqlite", 4).exists()
+    assert used_for_a_command(tmp_path)
+
+
+def test_the_key_of_a_command_is_looked_up_and_not_searched(of_today: Path) -> None:
+    assert used_for_a_command(of_today)
+
+
+def used_for_a_command(folder: Path) -> bool:
+    asked = f"EXPLAIN QUERY PLAN SELECT * FROM audit WHERE {COMMAND_KEY} = 'x' ORDER BY audit.id"
+    with closing(sqlite3.connect(folder / "store.sqlite")) as connection:
+        plan = " ".join(str(row) for row in connection.execute(asked))
+    return "USING INDEX ix_audit_command_key" in plan
