@@ -10,6 +10,7 @@ from cellctl.command.tracker import CommandTracker
 from cellctl.command.validator import CommandValidator, start_mode
 from cellctl.errors.records import DiskSilent, RecordsError
 from cellctl.packml.command import COMMAND_NAMES, Command
+from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
@@ -79,7 +80,15 @@ class CommandArbiter:
         self, command: UnitCommand, code: RejectCode, details: Mapping[str, str]
     ) -> None:
         """Have the audit log say, some time soon, what somebody was refused and why."""
-        detail = {**details, "refused": code.text}
+        detail: dict[str, int | str] = {
+            **details,
+            "refused": code.text,
+            "reject_code": int(code),
+        }
+        if command.unit_mode:
+            detail["mode"] = Mode(command.unit_mode).name.lower()
+        if command.alarm_ack_id:
+            detail["acknowledged"] = command.alarm_ack_id
         writing = self._store.do(RunStore.audit, command.who, _name(command), detail)
         self._unit.background.start(writing)
 

@@ -110,6 +110,7 @@ class LiveView:
             "connected": self._unit.live,
             "ready": status.ready,
             "hold_requested": status.hold_requested,
+            "safe_point_ahead": status.safe_point_ahead,
             "stop_not_confirmed": status.stop_not_confirmed,
             "step": {"number": status.step, "label": status.step_label, "text": progress.message},
             "pass": status.iteration,

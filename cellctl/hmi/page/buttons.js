@@ -1,7 +1,7 @@
 // The commands of the cell. What is permitted, and why not, comes from the cell.
 
 import { command } from "./api.js";
-import { clock, h, write } from "./dom.js";
+import { clock, corrected, h, write } from "./dom.js";
 import { cell, stale } from "./live.js";
 import { given, t } from "./texts.js";
 
@@ -77,8 +77,9 @@ export function longPress(button, act) {
 
 function startDialog() {
   const recipes = cell.description?.recipes || [];
-  const serial = h("input", { id: "serial", maxlength: 24, pattern: "[A-Z0-9._\\-]+", title: t("serial_form"), autocomplete: "off", required: true });
-  const mate = h("input", { id: "mate-serial", maxlength: 24, pattern: "[A-Z0-9._\\-]*", title: t("serial_form"), autocomplete: "off" });
+  const entry = (id, pattern, more = {}) => corrected(h("input", { id, maxlength: 24, pattern, title: t("serial_form"), autocomplete: "off", ...more }), () => t("serial_form"));
+  const serial = entry("serial", "[A-Z0-9._\\-]+", { required: true });
+  const mate = entry("mate-serial", "[A-Z0-9._\\-]*");
   const recipe = h("select", { id: "recipe" }, recipes.map((one) => h("option", { value: one.number }, `${one.number} ${one.name}`)));
   const dry = h("input", { type: "checkbox", id: "dry" });
   const dialog = h("dialog", { "aria-label": t("cmd_start") });
@@ -116,6 +117,12 @@ export function commands() {
   return h("section", { class: "commands" }, h("h2", {}, t("commands"), h("span", { class: "dim live", id: "last-command" })), controls(ORDER));
 }
 
+// What a press would do now: of a Hold, also whether it comes too late.
+function does(name) {
+  const late = name === "hold" && cell.snapshot?.state === "EXECUTE" && cell.snapshot.safe_point_ahead === false;
+  return t(late ? "does_hold_late" : `does_${name}`);
+}
+
 // A button that is forbidden stays in its place, with the reason below it; `besides` has, by command,
 // what a screen itself waits for.
 export function refresh(root, besides = {}) {
@@ -126,6 +133,6 @@ export function refresh(root, besides = {}) {
     const reason = whyNot(name) || besides[name];
     place.querySelector("button").disabled = Boolean(reason);
     const answer = typeof said[name] === "function" ? said[name]() : said[name];
-    write(place.querySelector("small"), answer || reason || t(`does_${name}`));
+    write(place.querySelector("small"), answer || reason || does(name));
   }
 }

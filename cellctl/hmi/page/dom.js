@@ -42,6 +42,14 @@ export function clock(text) {
   return new Date(text).toLocaleTimeString(CLOCK);
 }
 
+// A browser complains of an entry in its own language: here it is the page's.
+export function corrected(input, words) {
+  const look = () => { if (!input.validity.valid && !input.validity.customError) input.setCustomValidity(words()); };
+  input.addEventListener("input", () => { input.setCustomValidity(""); look(); });
+  input.addEventListener("invalid", look);
+  return input;
+}
+
 // How a magnitude stands against its limit; the mark is the limit.
 export function bar(value, limit, wide = false) {
   const element = h("div", { class: wide ? "bar wide" : "bar", "aria-hidden": "true" });

@@ -8,10 +8,18 @@ import { given, label, spoken, t } from "./texts.js";
 
 // A command has the word of its button; what it was about stands behind it.
 function done({ action, detail }) {
-  if (action === "set") return detail.acknowledged ? `${t("cmd_acknowledge")} F${detail.acknowledged}` : t("cmd_mode");
+  if (action === "set") {
+    return detail.acknowledged ? `${t("cmd_acknowledge")} F${detail.acknowledged}` : `${t("cmd_mode")} ${given(`mode_${(detail.mode || "").toUpperCase()}`, detail.mode || "—")}`;
+  }
   const command = given(`cmd_${action}`, "") || given(`audit_${action}`, action);
   const of = action === "start" ? [detail.mode === "maintenance" ? t("procedure") : t("recipe"), detail.recipe, detail.serial] : [detail.procedure && label(detail.procedure)];
   return [command, ...of].filter(Boolean).join(" ");
+}
+
+// Why it was asked for, in the person's words; and why it was refused, in those of the cell.
+function why({ detail }) {
+  const refused = detail.refused ? `■ ${t("refused", given(`reject_${detail.reject_code}`, detail.refused))}` : "";
+  return [detail.reason, refused].filter(Boolean).join(" · ");
 }
 
 async function more(root) {
@@ -23,7 +31,7 @@ async function more(root) {
   if (visitor.role !== "maintain") return;
   try {
     const { entries } = await ask("audit?limit=50");
-    root.querySelector("#audit")?.replaceChildren(h("h2", {}, t("audit")), table([t("started"), t("who"), t("action"), t("reason")], entries.map((one) => [time(one.time), one.actor, done(one), one.detail.reason || ""])));
+    root.querySelector("#audit")?.replaceChildren(h("h2", {}, t("audit")), table([t("started"), t("who"), t("action"), t("reason")], entries.map((one) => [time(one.time), one.actor, done(one), why(one)])));
   } catch { /* shown at the next visit */ }
 }
 

@@ -1,7 +1,7 @@
 // Runs: search, one of them in figures, its report.
 
 import { ask } from "./api.js";
-import { h, num, shown, table, time } from "./dom.js";
+import { corrected, h, num, shown, table, time } from "./dom.js";
 import { given, label, t } from "./texts.js";
 
 const PAGE = 30;
@@ -26,6 +26,16 @@ async function search(place, query, before = null) {
 
 const RESULTS = ["", "good", "bad", "stopped", "aborted", "interrupted", "open"];
 
+// A day as all dates of the page are written: what the browser's own box shows is in its own order.
+function dayField(name, wanted) {
+  const box = corrected(h("input", { id: `find-${name}`, type: "date", min: "2000-01-01", max: "2999-12-31", value: wanted }), () => t("no_day"));
+  const said = h("span", { class: "dim", id: `day-${name}` });
+  const tell = () => { said.textContent = box.value && ` ${box.value}`; };
+  box.addEventListener("input", tell);
+  tell();
+  return { box, said };
+}
+
 // Days are those of who asks: the last one counts to its end.
 function day(text, after) {
   if (!text) return "";
@@ -35,20 +45,28 @@ function day(text, after) {
 
 function list(root, wanted = {}) {
   const input = (name, more) => h("input", { id: `find-${name}`, maxlength: 80, value: wanted[name], ...more });
+  const days = { since: dayField("since", wanted.since), until: dayField("until", wanted.until) };
   const field = {
     serial: input("serial", { maxlength: 24 }), recipe: input("recipe"), operator: input("operator"),
     result: h("select", { id: "find-result" }, RESULTS.map((word) => h("option", { value: word }, t(word ? `result_${word}` : "any")))),
-    fault: input("fault", { type: "number", min: 1 }), since: input("since", { type: "date" }), until: input("until", { type: "date" }), calibration: input("calibration"),
+    fault: corrected(input("fault", { type: "number", min: 1 }), () => t("no_number")), since: days.since.box, until: days.until.box, calibration: input("calibration"),
   };
   const heading = { serial: "serial_begins", fault: "fault_or_alarm", since: "from_day", until: "to_day", calibration: "used_calibration" };
   const found = h("section", { id: "found" });
+  const { since, until } = field;
+  since.addEventListener("input", () => until.setCustomValidity(""));
   const go = (event) => {
     event?.preventDefault();
+    if (since.value && until.value && until.value < since.value) {
+      until.setCustomValidity(t("days_reversed"));
+      until.reportValidity();
+      return;
+    }
     const asked = Object.fromEntries(Object.entries(field).map(([name, one]) => [name, one.value]));
     const query = { ...asked, since: day(asked.since, 0), until: day(asked.until, 1) };
     search(found, Object.fromEntries(Object.entries(query).filter(([, value]) => value)));
   };
-  root.replaceChildren(h("section", {}, h("form", { onsubmit: go }, Object.entries(field).map(([name, one]) => h("label", {}, t(heading[name] || name), one)), h("button", {}, t("search")))), found);
+  root.replaceChildren(h("section", {}, h("form", { onsubmit: go }, Object.entries(field).map(([name, one]) => h("label", {}, h("span", {}, t(heading[name] || name), days[name]?.said), one)), h("button", {}, t("search")))), found);
   go();
 }
 

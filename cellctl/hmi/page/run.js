@@ -68,6 +68,7 @@ function state(s) {
 
 // What is to be done, in the words of state and mode; in Idle, why nothing can be started.
 function next(s) {
+  if (s.hold_requested && s.state === "EXECUTE") return t(s.safe_point_ahead === false ? "hold_late" : "hold_waits");
   const begun = { PRODUCTION: "start", MAINTENANCE: "procedure" }[s.mode];
   const refusal = s.state === "IDLE" ? s.permitted?.[begun] : null;
   if (refusal?.code) return t("next_refused", given(`reject_${refusal.code}`, refusal.reason));

@@ -50,6 +50,9 @@ def _store(folder: Path) -> None:
     store.audit("page:anna", "procedure ended", {"procedure": "calibrate head 1"})
     store.audit("page:anna", "set", {"acknowledged": 512})
     store.audit("page:anna", "reset", {"reason": "shift begins"})
+    store.audit("page:boris", "set", {"mode": "maintenance", "reason": ""})
+    refused = {"refused": "role of the person does not allow it", "reject_code": 268}
+    store.audit("page:vera", "set", {"mode": "manual", "reason": "a look", **refused})
     store.close()
 
 

@@ -42,6 +42,7 @@ def snapshot(**changes: Any) -> dict[str, Any]:
         "connected": True,
         "ready": True,
         "hold_requested": False,
+        "safe_point_ahead": True,
         "stop_not_confirmed": False,
         "step": {"number": 0, "label": "", "text": ""},
         "pass": 0,

@@ -143,6 +143,11 @@ async def test_two_operators_press_at_once_and_one_is_told_that_the_cell_has_cha
         ("page:boris@panel-1", "reset", True),
     ]
     assert noted[-1][2]["refused"] == RejectCode.SUPERSEDED.text
+    assert noted[-1][2]["reject_code"] == RejectCode.SUPERSEDED
+    later = page.wanted(ModeCommand(mode="manual"), person="boris")
+    assert isinstance(await page.ask(later), Refused)
+    await rig.unit.background.drain()
+    assert (await rig.archive.do(audit))[-1][2]["mode"] == "manual"
 
 
 async def test_refusals_by_the_thousand_do_not_fill_the_audit_log(

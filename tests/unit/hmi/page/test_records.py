@@ -38,10 +38,42 @@ def test_modes_procedures_and_commands_are_told_in_chinese(screen: Screen) -> No
     expect(runs.first).to_contain_text("生产")
     screen.sign_in("boris")
     tab.goto(f"{screen.url}#health")
-    expect(tab.locator("#audit tbody tr").first).to_contain_text("复位")
+    expect(tab.locator("#audit")).to_contain_text("复位")
     expect(tab.locator("#audit")).to_contain_text("启动 维护程序 101")
     expect(tab.locator("#audit")).to_contain_text("标定测头 1")
     expect(tab.locator("#audit")).to_contain_text("F512")
+
+
+def test_a_mode_and_a_refusal_are_told_whole(screen: Screen) -> None:
+    tab = screen.tab
+    screen.sign_in("boris")
+    tab.goto(f"{screen.url}#health")
+    refused, taken = tab.locator("#audit tbody tr").nth(0), tab.locator("#audit tbody tr").nth(1)
+    expect(taken).to_contain_text("Mode Maintenance")
+    expect(taken).not_to_contain_text("Refused")
+    expect(refused).to_contain_text("Mode Manual")
+    expect(refused).to_contain_text("a look · ■ Refused: your role does not allow it")
+
+
+def test_a_day_is_shown_as_all_dates_are_and_a_wrong_one_is_called_so(screen: Screen) -> None:
+    tab = screen.tab
+    tab.goto(f"{screen.url}#history")
+    since, until = tab.locator("#find-since"), tab.locator("#find-until")
+    expect(tab.locator("#found tbody tr")).to_have_count(2)
+    since.fill("2026-02-03")
+    expect(tab.locator("#day-since")).to_have_text("2026-02-03")
+    until.fill("2026-02-01")
+    tab.click("form button")
+    message = "element => element.validationMessage"
+    assert until.evaluate(message) == "This day is before the first one."
+    since.fill("2000-01-01")
+    tab.click("form button")
+    expect(tab.locator("#found")).to_contain_text("No runs found.")
+    tab.click("#language")
+    # Half of a day, which only a keyboard can write.
+    tab.locator("#find-since").press_sequentially("31")
+    tab.click("form button")
+    assert tab.locator("#find-since").evaluate(message).startswith("请填写日历上有的日期")
 
 
 def test_a_register_without_a_value_shows_a_dash(screen: Screen) -> None:

@@ -64,6 +64,21 @@ def test_what_moves_the_cell_is_pressed_for_a_second(screen: Screen, paper: Pape
     assert paper.asked[-1].command == PlainCommand(request="stop"), "one press, no dialog"
 
 
+def test_a_hold_says_what_it_waits_for(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    said, following = screen.tab.locator("#said-hold"), screen.tab.locator("#next")
+    running = {"state": "EXECUTE", "state_requested": "EXECUTE"}
+    paper.snapshot = snapshot(**running)
+    expect(said).to_contain_text("at the next point where it can go on")
+    paper.snapshot = snapshot(**running, safe_point_ahead=False)
+    expect(said).to_contain_text("Too late")
+    expect(screen.button("hold")).to_be_enabled()
+    paper.snapshot = snapshot(**running, hold_requested=True)
+    expect(following).to_contain_text("it waits for the next point")
+    paper.snapshot = snapshot(**running, hold_requested=True, safe_point_ahead=False)
+    expect(following).to_contain_text("comes too late")
+
+
 def test_a_start_names_serial_and_recipe(screen: Screen, paper: PaperDaemon) -> None:
     screen.sign_in()
     screen.button("start").click()
