@@ -3,7 +3,7 @@
 import sys
 
 from cellctl.cli.commands import whole_app
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.root import settings
 from cellctl.errors import CellError
 
@@ -18,7 +18,7 @@ def main() -> None:
         if settings["debug"]:
             raise
         console = console_of_lines(stderr=True)
-        console.print(str(error), style="bold red")
-        console.print(f"  cause:  {error.cause}")
-        console.print(f"  remedy: {error.remedy}")
+        print_hanging(console, str(error), 5, "bold red")
+        print_hanging(console, f"  cause:  {error.cause}", 10)
+        print_hanging(console, f"  remedy: {error.remedy}", 10)
         sys.exit(1)

@@ -9,7 +9,7 @@ import typer
 from rich.console import Console
 
 from cellctl.cli.commissioning.hints import hints_of_this_pc
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig
@@ -31,6 +31,11 @@ if TYPE_CHECKING:
 _UNDECIDED = (
     "The values contradict each other, and no other one decides which is wrong: the one above, or"
 )
+
+_DETAIL = 5
+"""Where further lines of an error begin, as what is allowed does."""
+_ABOUT = 32
+"""Width of the first column of what is said of a good file."""
 
 _POSES = (
     "contradict each other by less than 100 mm and 10 deg, over places with taught_above_mm by "
@@ -91,7 +96,7 @@ def _bad_moves(console: Console, cell_file: Path, *, quiet: bool) -> Iterator[st
         good = False
         yield text
         if not quiet:
-            console.print(text)
+            print_hanging(console, text, _DETAIL)
     if good and not quiet:
         console.print("  every move is free, by the model")
 
@@ -140,41 +145,46 @@ def _show_findings(console: Console, cell_file: Path, found: Sequence[ConfigIssu
     errors = "1 error" if len(found) == 1 else f"{len(found)} errors"
     console.print(f"{cell_file}: {errors}", style="bold red")
     for problem in found:
-        console.print(f"F{problem.number} {problem.written}")
-        console.print(f"     {problem.allowed}")
+        print_hanging(console, f"F{problem.number} {problem.written}", _DETAIL)
+        print_hanging(console, f"     {problem.allowed}", _DETAIL)
         if problem.against:
-            console.print(f"     {_UNDECIDED}")
+            print_hanging(console, f"     {_UNDECIDED}", _DETAIL)
         for other in problem.against:
-            console.print(f"       {other}")
+            print_hanging(console, f"       {other}", _DETAIL + 4)
 
 
 def _show_cell(console: Console, cell_file: Path, cell: CellConfig, examined: Examination) -> None:
     console.print(f"{cell_file}: good. Cell '{cell.name}', simulated: {cell.simulated}")
     for key, (_, device) in cell.devices().items():
-        console.print(f"  {key:32} {device.driver}")
+        _say(console, key, device.driver)
     for what in _never_checked(cell):
-        console.print(f"  {what}", style="yellow")
+        print_hanging(console, f"  {what}", _DETAIL, "yellow")
     _say_what_zones_hold(console, cell)
     _say_what_boxes_leave(console, cell, examined.needs)
     _say_how_sensors_lie(console, cell)
-    console.print(f"  {'poses':32} {_POSES}")
+    _say(console, "poses", _POSES)
     model = model_path(cell_file)
     if model.exists():
         text = f"`cellctl check --moves {cell_file}` holds every move against it"
-        console.print(f"  {f'model {model.name}':32} {text}")
+        _say(console, f"model {model.name}", text)
     for recipe in cell.recipes:
         text = f"{recipe.name} ({recipe.process}): this cell can run it"
-        console.print(f"  recipe {recipe.id:<25} {text}")
+        _say(console, f"recipe {recipe.id}", text)
     for what in _not_yet_checked(cell, cell_file.parent):
-        console.print(f"  not checked yet: {what}", style="yellow")
+        print_hanging(console, f"  not checked yet: {what}", _DETAIL, "yellow")
     _say_what_others_need(console, cell)
     _say_what_the_daemon_needs(console, cell, cell_file.parent)
     if examined.remarks:
         # Last, where they are read.
         console.print("Look at these again; each may be meant as it stands:", style="yellow")
     for remark in examined.remarks:
-        console.print(f"  {remark.written}", style="yellow")
-        console.print(f"     {remark.allowed}", style="yellow")
+        print_hanging(console, f"  {remark.written}", _DETAIL, "yellow")
+        print_hanging(console, f"     {remark.allowed}", _DETAIL, "yellow")
+
+
+def _say(console: Console, about: str, text: str) -> None:
+    """One line of a good file; on a narrow terminal the text goes on below itself."""
+    print_hanging(console, f"  {about:{_ABOUT}} {text}", _ABOUT + 3)
 
 
 def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
@@ -215,8 +225,8 @@ def _say_what_zones_hold(console: Console, cell: CellConfig) -> None:
             for robot, share in zone.robots.items()
         ]
         order = ", then ".join(zone.retreat) or "nobody while another one is in it"
-        console.print(f"  {f'zones.{name}':32} holds of {'; of '.join(texts)}")
-        console.print(f"  {'':32} leaves first: {order}")
+        _say(console, f"zones.{name}", f"holds of {'; of '.join(texts)}")
+        _say(console, "", f"leaves first: {order}")
 
 
 def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[ArmNeeds]) -> None:
@@ -228,20 +238,19 @@ def _say_what_boxes_leave(console: Console, cell: CellConfig, needs: Sequence[Ar
                 for axis, below, above in zip("xyz", room.below_mm, room.above_mm, strict=True)
             )
             name = f"robots.{of_arm.name} {room.key.rsplit('.', 1)[-1]}"
-            text = f"leaves beyond taught poses and stated moves: {left} mm"
-            console.print(f"  {name:32} {text}")
+            _say(console, name, f"leaves beyond taught poses and stated moves: {left} mm")
 
 
 def _say_how_sensors_lie(console: Console, cell: CellConfig) -> None:
     for name, sensor in cell.force_sensors.items():
-        console.print(f"  {f'force_sensors.{name}':32} {how_it_lies(sensor)}")
+        _say(console, f"force_sensors.{name}", how_it_lies(sensor))
 
 
 def _say_what_the_daemon_needs(console: Console, cell: CellConfig, folder: Path) -> None:
     """Hints, not errors: whoever checks a file is often neither the user nor on the PC that the
     daemon runs as and on."""
     for hint in hints_of_this_pc(cell, folder):
-        console.print(f"  {hint}", style="yellow")
+        print_hanging(console, f"  {hint}", _DETAIL, "yellow")
 
 
 def _say_what_others_need(console: Console, cell: CellConfig) -> None:
@@ -262,9 +271,9 @@ def _say_what_others_need(console: Console, cell: CellConfig) -> None:
             if lacks
             else "no recipe; has its devices"
         )
-        console.print(f"  process {name:<24} {text}")
+        _say(console, f"process {name}", text)
         for allowed, same in _by_text(lacks).items():
-            console.print(f"     {', '.join(same)}: {allowed}")
+            print_hanging(console, f"     {', '.join(same)}: {allowed}", _DETAIL)
 
 
 def _by_text(issues: Iterable[ConfigIssue]) -> dict[str, list[str]]:

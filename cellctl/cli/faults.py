@@ -6,7 +6,10 @@ from enum import StrEnum
 from typing import Annotated
 
 import typer
+from rich.cells import cell_len
+from rich.console import Console
 
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.errors import CellError
 from cellctl.errors.base import Reaction, fault_number
 from cellctl.fault_catalogue import known_faults
@@ -60,7 +63,10 @@ Lang = Annotated[
 def faults(
     number: Number = None, *, as_json: AsJson = False, lang: Lang = Language.ENGLISH
 ) -> None:
-    """All faults, installed packages' included, as Markdown; or one with cause and remedy."""
+    """All faults, installed packages' included, or one, with cause and remedy.
+
+    All of them in a file or to a program are the page docs/faults.md, in Markdown.
+    """
     found = known_faults()
     if number is not None:
         found = [fault for fault in found if fault.number == number]
@@ -69,10 +75,13 @@ def faults(
     if as_json:
         plain = [_plain(fault, lang) for fault in found]
         typer.echo(json.dumps(plain, indent=2, ensure_ascii=False))
-    elif number is not None:
-        typer.echo(_one(found[0], lang))
-    else:
+        return
+    console = console_of_lines()
+    if number is None and not console.is_terminal:
         typer.echo(catalogue_page(found, lang), nl=False)
+        return
+    for fault in found:
+        _show(console, fault, lang)
 
 
 def _plain(fault: type[CellError], language: Language) -> dict[str, str | int]:
@@ -86,12 +95,12 @@ def _plain(fault: type[CellError], language: Language) -> dict[str, str | int]:
     }
 
 
-def _one(fault: type[CellError], language: Language) -> str:
+def _show(console: Console, fault: type[CellError], language: Language) -> None:
     words = fault_words(fault, language)
     told = (words.cause, words.remedy, _reaction(fault, language))
-    lines = [f"F{fault.number:03d} {words.text}"]
-    lines += [f"  {part}{said}" for part, said in zip(_PARTS[language], told, strict=True)]
-    return "\n".join(lines)
+    print_hanging(console, f"F{fault.number:03d} {words.text}", 5)
+    for part, said in zip(_PARTS[language], told, strict=True):
+        print_hanging(console, f"  {part}{said}", 2 + cell_len(part))
 
 
 def _reaction(fault: type[CellError], language: Language) -> str:

@@ -8,11 +8,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from cellctl.clock import utc_now
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.boxes import box_issues, box_remarks
 from cellctl.config.checks.arms.needs import ArmNeeds, arm_needs
 from cellctl.config.checks.arms.tables import table_issues, table_remarks
 from cellctl.config.checks.cross_checks import unpermitted
+from cellctl.config.checks.plausible.arms import arm_remarks
+from cellctl.config.checks.plausible.calibration_files import calibration_file_remarks
 from cellctl.config.checks.plausible.findings import plausibility_issues
 from cellctl.config.checks.plausible.mounted import mounted_remarks
 from cellctl.config.checks.plausible.resting import resting_issues
@@ -102,10 +105,12 @@ def model_issues(cell: CellConfig, model: StatedModel) -> Iterator[ConfigIssue]:
 
 def _remarks(cell: CellConfig, path: Path, needs: Iterable[ArmNeeds]) -> Iterator[ConfigIssue]:
     yield from cell_remarks(cell)
+    yield from arm_remarks(cell)
     yield from mounted_remarks(cell)
     yield from sensor_remarks(cell)
     yield from table_remarks(cell)
     yield from box_remarks(cell, needs)
+    yield from calibration_file_remarks(cell, path.parent, utc_now())
     for index, recipe in enumerate(cell.recipes):
         definition = process_definition(recipe.process)
         yield from definition.remarks(cell, recipe, f"recipes.{index}", path.parent)

@@ -1,6 +1,7 @@
 """What is missing on this PC, and may be right on that of the cell."""
 
 import grp
+import os
 from pathlib import Path
 
 from cellctl.config import CellConfig
@@ -25,6 +26,12 @@ def hints_of_this_pc(cell: CellConfig, folder: Path) -> list[str]:
             f"calibration_dir {calibrations}: {there}: right for a cell that is still to be "
             "calibrated; what checks hold against calibrations was not checked"
         )
+    processors = os.cpu_count() or 1
+    hints += [
+        f"force_sensors.{name}.cpu {sensor.cpu}: this PC has processors 0 to {processors - 1}"
+        for name, sensor in cell.force_sensors.items()
+        if sensor.cpu is not None and sensor.cpu >= processors
+    ]
     group = cell.local_api.group
     if group and not _is_group(group):
         hints.append(f"local_api.group {group}: this PC has no such group, the cell's must")

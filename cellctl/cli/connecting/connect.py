@@ -10,7 +10,7 @@ from rich.text import Text
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.connecting.answer import Answer, remedy_here
 from cellctl.cli.connecting.asking import ask_devices
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
 
@@ -58,7 +58,7 @@ def show(console: Console, answers: list[Answer]) -> None:
         f"{there} of {len(devices)} devices answer, {other} of them differ from what is meant",
         style="bold green" if all(answer.good for answer in answers) else "bold red",
     )
-    console.print(LEFT_AS_FOUND)
+    print_hanging(console, LEFT_AS_FOUND, 0)
 
 
 def _serial(number: str) -> str:
@@ -76,14 +76,14 @@ def _show_one(console: Console, answer: Answer) -> None:
     style = None if answer.good else "bold red"
     console.print(f"{answer.path} by {answer.driver}: {says}", style=style)
     for name, text in answer.facts.items():
-        console.print(f"  {name:24} {text}")
+        print_hanging(console, f"  {name:24} {text}", 27)
     for note in answer.notes:
-        console.print(f"  note: {note}", style="yellow")
+        print_hanging(console, f"  note: {note}", 8, "yellow")
     for fault in answer.faults:
         _show_fault(console, fault)
 
 
 def _show_fault(console: Console, fault: CellError) -> None:
-    console.print(f"  {fault}", style="bold red")
-    console.print(f"    cause:  {fault.cause}")
-    console.print(f"    remedy: {remedy_here(fault)}")
+    print_hanging(console, f"  {fault}", 4, "bold red")
+    print_hanging(console, f"    cause:  {fault.cause}", 12)
+    print_hanging(console, f"    remedy: {remedy_here(fault)}", 12)

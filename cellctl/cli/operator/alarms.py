@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from cellctl.api.local_socket.messages import AcknowledgeCommand, made
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.errors.base import fault_number
@@ -21,9 +21,9 @@ def list_alarms(context: typer.Context, socket: SocketOption = None) -> None:
     console = console_of_lines()
     alarms = DaemonClient(socket).status().alarms
     for alarm in alarms:
-        console.print(alarm.text, style="yellow")
-        console.print(f"  cause:  {alarm.cause}")
-        console.print(f"  remedy: {alarm.remedy}")
+        print_hanging(console, alarm.text, 5, "yellow")
+        print_hanging(console, f"  cause:  {alarm.cause}", 10)
+        print_hanging(console, f"  remedy: {alarm.remedy}", 10)
     if not alarms:
         console.print("no alarms")
 

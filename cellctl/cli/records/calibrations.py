@@ -6,14 +6,16 @@ from datetime import datetime
 from typing import Annotated, Any
 
 import typer
-from rich.table import Table
+from rich.table import Column, Table
 
 from cellctl.calibration.checks import RELATIONS
-from cellctl.cli.consoles import console_of_tables
+from cellctl.cli.consoles import console_of_lines, console_of_tables, print_hanging
+from cellctl.cli.operator.no_end import without_end
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.clock import utc_now
-from cellctl.records.entries import Calibration
+from cellctl.records.entries import AuditEntry, Calibration
+from cellctl.records.rejected import rejected, rejected_kinds
 from cellctl.spelling import nearest
 
 app = typer.Typer(help="Look into the calibrations of the run store.", no_args_is_help=True)
@@ -23,9 +25,10 @@ AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 
 @app.command("list")
 def list_calibrations(*, as_json: AsJson = False, data_dir: DataDir = None) -> None:
-    """The newest calibration of each kind."""
+    """The newest calibration of each kind, and results since then that were rejected."""
     newest: dict[str, Calibration] = {}
-    for one in _kept(data_dir):
+    kept, audit = _kept(data_dir)
+    for one in kept:
         newest.setdefault(one.kind, one)
     found = [newest[kind] for kind in sorted(newest)]
     if as_json:
@@ -36,20 +39,41 @@ def list_calibrations(*, as_json: AsJson = False, data_dir: DataDir = None) -> N
             "no calibrations: none was made by a procedure of this run store. Those that the cell "
             "uses lie in `calibration_dir` of its cell file; `cellctl status` lists them."
         )
-        return
+    else:
+        # Reasons hold whatever people have typed: brackets in it are no mark-up.
+        console_of_tables().print(_newest(found))
+    for kind in sorted(rejected_kinds(audit)):
+        since = newest[kind].made if kind in newest else None
+        _say_rejected([one for one in rejected(audit, kind) if since is None or one.time > since])
+
+
+def _newest(found: Sequence[Calibration]) -> Table:
     now = utc_now()
-    table = Table("kind", "made (UTC)", "valid until", "verdict", "state", "id", box=None)
+    # Kind and id are what other commands ask for: a terminal of 80 columns cuts neither.
+    whole = Column("kind", no_wrap=True), Column("id", no_wrap=True)
+    table = Table(whole[0], "made (UTC)", "valid until", "verdict", "state", whole[1], box=None)
     for one in found:
+        endless = without_end(one.valid_until, now)
         table.add_row(
             one.kind,
             f"{one.made:%Y-%m-%d %H:%M}",
-            f"{one.valid_until:%Y-%m-%d}",
+            "no end" if endless else f"{one.valid_until:%Y-%m-%d}",
             _verdict(one),
             _state(one, now),
             one.id[:12],
         )
-    # Reasons hold whatever people have typed: brackets in it are no mark-up.
-    console_of_tables().print(table)
+    return table
+
+
+def _say_rejected(entries: Sequence[AuditEntry]) -> None:
+    console = console_of_lines()
+    for one in entries:
+        text = (
+            f"rejected, nothing uses it: {one.detail.get('item')} of "
+            f"{one.time:%Y-%m-%d %H:%M} UTC, run {one.detail.get('run')}: "
+            f"{one.detail.get('reason')}"
+        )
+        print_hanging(console, text, 2)
 
 
 @app.command()
@@ -60,10 +84,11 @@ def show(
     data_dir: DataDir = None,
 ) -> None:
     """Every calibration of one kind, oldest first: how its figures move over the years."""
-    kept = _kept(data_dir)
+    kept, audit = _kept(data_dir)
     found = [one for one in reversed(kept) if one.kind == kind]
-    if not found:
-        kinds = sorted({one.kind for one in kept})
+    not_used = rejected(audit, kind)
+    if not found and not (not_used and not as_json):
+        kinds = sorted({one.kind for one in kept} | rejected_kinds(audit))
         known = f"kinds here: {', '.join(kinds) or 'none'}"
         typer.echo(f"no calibration of the kind {kind!r}; {nearest(kind, kinds)}{known}", err=True)
         raise typer.Exit(1)
@@ -78,13 +103,15 @@ def show(
             f"{one.made:%Y-%m-%d %H:%M} UTC{by}, {one.software}, id {one.id[:12]}: "
             f"{_verdict(one)}; {_state(one, now)}",
         )
-    console.print(_figures(found))
+    if found:
+        console.print(_figures(found))
+    _say_rejected(not_used)
 
 
-def _kept(data_dir: DataDir) -> list[Calibration]:
-    """All calibrations, the newest first."""
+def _kept(data_dir: DataDir) -> tuple[list[Calibration], list[AuditEntry]]:
+    """All calibrations, the newest first, and the audit log."""
     with opened_store(data_dir) as store:
-        return store.calibrations()
+        return store.calibrations(), store.audit_log()
 
 
 def _figures(found: Sequence[Calibration]) -> Table:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from cellctl.errors.base import fault_number
 from cellctl.records.entries import RunResult
 from cellctl.records.run_filter import RunFilter
 from cellctl.records.seals import LedgerHead
@@ -27,7 +28,14 @@ Serial = Annotated[str, typer.Option(help="Only this serial number.")]
 RecipeName = Annotated[str, typer.Option(help="Only of the recipe with this name.")]
 Operator = Annotated[str, typer.Option(help="Only this operator's.")]
 Result = Annotated[str, typer.Option(help=f"{', '.join(_RESULTS)}.", callback=_known)]
-FaultNumber = Annotated[int | None, typer.Option(help="Only where it came up.", min=1)]
+FaultNumber = Annotated[
+    int | None,
+    typer.Option(
+        parser=fault_number,
+        help="Only where it came up, such as F529 or 529.",
+        metavar="NUMBER",
+    ),
+]
 CalibrationId = Annotated[str, typer.Option(help="Only what used it; its identity.")]
 Since = Annotated[datetime | None, typer.Option(help="First day.", formats=_DAY)]
 Until = Annotated[datetime | None, typer.Option(help="Last day.", formats=_DAY)]

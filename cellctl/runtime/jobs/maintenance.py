@@ -9,6 +9,7 @@ from cellctl.errors.calibration import CalibrationNotStored, MeasuredBeyondBound
 from cellctl.errors.records import RecordsError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import RunResult
+from cellctl.records.rejected import REJECTED
 from cellctl.records.replay.procedure_result import STORED, check_figures
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
@@ -110,6 +111,7 @@ class MaintenanceJob(Job):
             # that refuses it must not hide the verdict.
             aside = await self._put_aside(outcome)
             why = f"{outcome.kind.name}: {reasons}; {aside}"
+            await self._tell_rejected(outcome, f"{reasons}; {aside}")
             if not _refutes_bound(outcome):
                 raise ResultOutOfLimits(why)
             fault = MeasuredBeyondBound(why)
@@ -145,6 +147,15 @@ class MaintenanceJob(Job):
             if outcome.passed:
                 raise
             _log.error("figures not kept", run=self.run_number, fault=str(error))
+
+    async def _tell_rejected(self, outcome: ProcedureOutcome, why: str) -> None:
+        """The store keeps no such result; its audit log says that there was one, and why."""
+        detail = {"item": outcome.kind.name, "run": self.run_number, "reason": why}
+        try:
+            await self._store.do(RunStore.audit, self._who, REJECTED, detail)
+        except RecordsError as error:
+            # A disk that refuses it must not hide the verdict.
+            _log.error("rejection not kept", run=self.run_number, fault=str(error))
 
     async def _put_aside(self, outcome: ProcedureOutcome) -> str:
         try:

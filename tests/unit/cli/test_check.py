@@ -84,6 +84,13 @@ def test_what_the_daemon_needs_of_its_pc_is_a_hint(tmp_path: Path) -> None:
     assert "local_api.group nobody-has-this: this PC has no such group" in done.output
 
 
+def test_a_processor_that_this_pc_lacks_is_a_hint(tmp_path: Path) -> None:
+    path = written(tmp_path, "deck.toml", "stale_ms = 300.0", "stale_ms = 300.0\ncpu = 255")
+    done = CliRunner().invoke(whole_app(), ["check", str(path)])
+    assert done.exit_code == 0, done.output
+    assert "force_sensors.force.cpu 255: this PC has processors 0 to" in done.output
+
+
 def test_a_data_folder_that_may_not_be_written_is_a_hint(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

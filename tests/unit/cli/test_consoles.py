@@ -1,9 +1,12 @@
 """What people and devices say is printed as it is: no brackets vanish, no names become pictures."""
 
+import io
 import re
 from pathlib import Path
 
 import pytest
+from rich.cells import cell_len
+from rich.console import Console
 from rich.table import Table
 
 import cellctl.cli
@@ -32,3 +35,27 @@ def test_no_command_makes_a_console_that_reads_mark_up() -> None:
         if re.search(r"\bConsole\(", line) and "markup=False" not in line
     ]
     assert made == []
+
+
+def test_a_long_line_goes_on_below_its_text() -> None:
+    text = "  poses      contradict each other by less than 100 mm and 10 deg, as far as it goes"
+    lines = consoles.hanging(text, 40, 13).splitlines()
+    assert lines[0] == "  poses      contradict each other by"
+    assert all(line.startswith(" " * 10) for line in lines[1:])
+    assert all(len(line) <= 40 for line in lines)
+    assert " ".join(text.split()) == " ".join(" ".join(lines).split())
+
+
+def test_chinese_is_broken_by_the_width_that_it_has() -> None:
+    lines = consoles.hanging("  原因：" + "在不应接触的地方发生接触，" * 5, 40, 8).splitlines()
+    assert len(lines) > 2
+    assert all(cell_len(line) <= 40 for line in lines)
+    assert not any(line.strip().startswith("，") for line in lines)
+
+
+def test_only_a_terminal_breaks_lines() -> None:
+    for terminal in (True, False):
+        file = io.StringIO()
+        console = Console(file=file, force_terminal=terminal, width=40, soft_wrap=True)
+        consoles.print_hanging(console, "word " * 20, 4)
+        assert file.getvalue().count("\n") == (3 if terminal else 1)

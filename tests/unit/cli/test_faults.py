@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from rich.cells import cell_len
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
@@ -22,6 +23,16 @@ def test_one_fault_has_its_cause_and_remedy() -> None:
     for words in ("F207", fault.text, fault.cause, fault.remedy, fault.reaction.value):
         assert words in text
     assert "F206" not in text
+
+
+def test_a_terminal_shows_all_of_them_as_it_shows_one() -> None:
+    one = said("207")
+    terminal = CliRunner(env={"FORCE_COLOR": "1", "COLUMNS": "80", "NO_COLOR": "1"})
+    shown = terminal.invoke(whole_app(), ["faults"]).stdout
+    assert "| number |" in said(), "a file is the page"
+    assert "|" not in shown.split("F208", 1)[0].split("F207", 1)[1]
+    assert " ".join(one.split()) in " ".join(shown.split())
+    assert max(cell_len(line) for line in shown.splitlines()) <= 80
 
 
 @pytest.mark.parametrize("written", ["F207", "f207"])

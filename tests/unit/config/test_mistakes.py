@@ -11,6 +11,7 @@ from cellctl.cli.commands import whole_app
 from cellctl.config import problems_before_commissioning
 from cellctl.config.commissioning import examine_before_commissioning
 from tests.unit.config.between_arms import BETWEEN_ARMS
+from tests.unit.config.deck_week import DECK_WEEK, DECK_WEEK_PASSES
 from tests.unit.config.fresh_cells import FRESH_CELLS, FRESH_CELLS_PASS
 from tests.unit.config.fresh_eyes import FRESH_EYES, FRESH_EYES_PASSES
 from tests.unit.config.mistake import Mistake, Undecided
@@ -52,7 +53,7 @@ SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
 ALL = (
     *(MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS),
-    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES + FRESH_CELLS),
+    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES + FRESH_CELLS + DECK_WEEK),
 )
 
 
@@ -89,7 +90,10 @@ def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) 
 
 @pytest.mark.parametrize(
     "case",
-    UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK + FRESH_EYES_PASSES + FRESH_CELLS_PASS,
+    [
+        *(UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK + FRESH_EYES_PASSES),
+        *(FRESH_CELLS_PASS + DECK_WEEK_PASSES),
+    ],
     ids=lambda one: one.reason,
 )
 def test_what_nobody_can_decide_passes_with_a_remark_where_there_is_one(

@@ -1,4 +1,4 @@
-"""Taught poses and bounds of arms that no arm has."""
+"""Taught poses, ways and bounds of arms that no arm has."""
 
 from collections.abc import Iterator, Set
 from itertools import combinations
@@ -22,13 +22,14 @@ m."""
 
 
 def arm_issues(cell: CellConfig, bad: Set[str]) -> Iterator[ConfigIssue]:
-    """Copied poses, joint bounds of more than a turn, boxes beyond the reach of the arm.
+    """Copied poses and ways, joint bounds of more than a turn, boxes beyond the reach of the arm.
 
     ``bad`` holds the paths of devices whose settings are wrong themselves.
     """
     for name, robot in cell.robots.items():
         path = f"robots.{name}"
         yield from _copied(path, robot)
+        yield from _copied_ways(path, robot)
         yield from _joint_bounds(f"{path}.settings", robot.settings)
         if path not in bad:
             yield from _boxes(f"{path}.settings", robot)
@@ -39,6 +40,44 @@ def _copied(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
         if np.max(np.abs(np.subtract(joints_deg, others_deg))) < _SAME_DEG:
             allowed = f"another place than {first}; these are its joints"
             yield ConfigIssue(f"{path}.poses_deg.{second}", str(list(others_deg)), allowed)
+
+
+def _copied_ways(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
+    """A way that was copied for the way back, whose ends nobody has exchanged.
+
+    The arm takes the first one and goes straight back, through what the way leads round.
+    """
+    first: dict[tuple[str, str], int] = {}
+    for index, way in enumerate(robot.ways):
+        ends = way.start, way.end
+        if way.start == way.end:
+            yield ConfigIssue(f"{path}.ways.{index}.end", repr(way.end), "another pose than start")
+        elif ends in first:
+            back = "" if ends[::-1] in first else f"; is it the way back, from {ends[1]!r}?"
+            allowed = f"ends that no way before has; ways.{first[ends]} leads there from it{back}"
+            yield ConfigIssue(f"{path}.ways.{index}.start", repr(way.start), allowed)
+        first.setdefault(ends, index)
+
+
+def arm_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
+    """Ways that lead one way only, and arrivals that are called so from far off."""
+    for name, robot in cell.robots.items():
+        stated = {(way.start, way.end) for way in robot.ways}
+        for index, way in enumerate(robot.ways):
+            if (way.end, way.start) not in stated:
+                said = (
+                    f"back from {way.end!r} to {way.start!r} the arm goes straight in the joints; "
+                    "right if that is free (`cellctl check --moves`)"
+                )
+                written = f"{way.start!r} to {way.end!r}"
+                yield ConfigIssue(f"robots.{name}.ways.{index}", written, said)
+        for key, most in (("arrival_tolerance_mm", 1.0), ("arrival_tolerance_deg", 0.5)):
+            value = robot.settings.get(key, 0.0)
+            if value > most:
+                said = (
+                    f"an arm that ends so far from its target counts as arrived; {most:g} is much"
+                )
+                yield ConfigIssue(f"robots.{name}.settings.{key}", f"{value:g}", said)
 
 
 def _joint_bounds(path: str, settings: dict[str, Any]) -> Iterator[ConfigIssue]:

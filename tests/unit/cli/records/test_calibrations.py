@@ -11,7 +11,9 @@ from typer.testing import CliRunner, Result
 
 from cellctl.calibration.store.envelope import read_stored
 from cellctl.cli.records.calibrations import app
+from cellctl.clock import utc_now
 from cellctl.records import RunStore
+from cellctl.records.rejected import REJECTED
 
 SHIPPED = Path(__file__).parents[4] / "config" / "demo-calibration"
 RUNNER = CliRunner(env={"COLUMNS": "200", "NO_COLOR": "1"})
@@ -82,3 +84,30 @@ def test_what_is_not_there_is_said(store: RunStore) -> None:
     done = asked("show", "head_9", "--data-dir", folder)
     assert done.exit_code == 1
     assert "head_9" in done.stderr
+
+
+def test_a_rejected_result_is_told_until_one_of_its_kind_passes(
+    store: RunStore, folder: str
+) -> None:
+    detail = {"item": "base_frame", "run": 7, "reason": "rms [x] 0.31, limit 0.2 px; kept in away"}
+    store.audit("line", REJECTED, detail)
+    for words in (("list",), ("show", "base_frame")):
+        done = asked(*words, "--data-dir", folder)
+        assert done.exit_code == 0, done.output
+        assert "rejected, nothing uses it: base_frame" in done.stdout
+        assert "run 7: rms [x] 0.31, limit 0.2 px; kept in away" in done.stdout
+    head = read_stored(SHIPPED, "base_frame")
+    store.add_calibration(replace(head, made=utc_now() + timedelta(seconds=1)))
+    assert "rejected" not in asked("list", "--data-dir", folder).stdout
+    assert "run 7" in asked("show", "base_frame", "--data-dir", folder).stdout
+
+
+def test_names_are_whole_in_80_columns(store: RunStore, folder: str) -> None:
+    stored = read_stored(SHIPPED, "contact_stiffness_1")
+    store.add_calibration(stored)
+    narrow = {"COLUMNS": "80", "NO_COLOR": "1"}
+    done = CliRunner(env=narrow).invoke(app, ["list", "--data-dir", folder])
+    assert " contact_stiffness_1 " in done.stdout
+    assert stored.id[:12] in done.stdout
+    assert "9999" not in done.stdout
+    assert all(len(line) <= 80 for line in done.stdout.splitlines())

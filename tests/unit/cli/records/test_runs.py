@@ -56,6 +56,13 @@ def test_runs_are_listed_newest_first(runner: CliRunner, folder: str) -> None:
     assert "SAT-0043" not in one.stdout
 
 
+@pytest.mark.parametrize("written", ["207", "F207", "f207"])
+def test_a_fault_is_taken_as_people_write_it(runner: CliRunner, folder: str, written: str) -> None:
+    done = runner.invoke(app, ["list", "--fault", written, "--data-dir", folder])
+    assert (done.exit_code, done.stdout) == (0, "no runs\n")
+    assert runner.invoke(app, ["list", "--fault", "two"]).exit_code == 2
+
+
 def test_a_result_that_no_run_can_have_is_refused(runner: CliRunner) -> None:
     refused = runner.invoke(app, ["list", "--result", "god"])
     assert refused.exit_code == 2

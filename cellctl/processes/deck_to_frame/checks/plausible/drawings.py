@@ -19,6 +19,8 @@ _OUTWARD = 0.9
 """Cosine: the heads see both parts from above, and the deck comes from there (mission A3)."""
 _PIN_MM = 0.1
 """One pin goes through both holes, with a few hundredths in each."""
+_PIN_PLACE_MM = 0.05
+"""Two drawings have one pin at one place; what was measured on each part differs by less."""
 _BORE = (0.8, 1.65)
 """Limits of a deck's bore over the thread below it, which a drawing has as nominal or as core
 diameter: from a core hole to the coarse clearance hole of ISO 273, over the core of M2 or more."""
@@ -137,6 +139,19 @@ def _pairs(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:
         if wrong:
             allowed = f"{wanted}; hole {name} of {frame.written} has {below_mm:g}"
             yield deck.hole_issue(name, "diameter_mm", f"{above_mm:g}", allowed)
+        elif hole.kind == "pin":
+            yield from _pin_places(deck, frame, name)
+
+
+def _pin_places(deck: PartDrawing, frame: PartDrawing, name: str) -> Iterator[ConfigIssue]:
+    """The pins hold the parts where the drawings have them, whatever the other holes say."""
+    above_mm, below_mm = deck.position_mm(name), frame.position_mm(name)
+    if np.max(np.abs(above_mm - below_mm)[:2]) > _PIN_PLACE_MM:
+        allowed = (
+            f"x and y within {_PIN_PLACE_MM:g} of {below_mm[:2].tolist()}, where it is in "
+            f"{frame.written}: one pin goes through both"
+        )
+        yield deck.hole_issue(name, "position_mm", str(above_mm.tolist()), allowed)
 
 
 def _heads(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:

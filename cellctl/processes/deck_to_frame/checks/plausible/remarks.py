@@ -90,7 +90,13 @@ def _lines(drawing: PartDrawing) -> Iterator[ConfigIssue]:
     for name in ("head_1", "head_2"):
         holes = getattr(drawing.features, name)
         places_m = np.array([drawing.position_mm(hole) for hole in holes]) * MM
-        if len(holes) >= 3 and on_a_line(places_m, _NEARLY):
+        if len(holes) < 3:
+            said = (
+                "a head that sees fewer than three holes does not tell by itself which of them is "
+                "elsewhere than drawn; right if no others are in its picture"
+            )
+            yield drawing.issue(name, str(list(holes)), said)
+        elif on_a_line(places_m, _NEARLY):
             said = "these holes lie on one line; right if the drawing has them so"
             yield drawing.issue(name, str(list(holes)), said)
 
