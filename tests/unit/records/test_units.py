@@ -2,7 +2,7 @@
 
 import ast
 import re
-from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -51,41 +51,66 @@ OTHER_UNITS = frozenset({"", "%", "σ", "1", "Hz", "of 4"})
 """Beside those at the ends of keys, what a figure may be counted in."""
 
 
-def _modules() -> Iterator[tuple[Path, ast.Module]]:
-    for package in WRITERS:
-        for path in sorted((SOURCE / package).rglob("*.py")):
-            yield path, ast.parse(path.read_text(encoding="utf-8"))
+PLACE_OF_UNIT = {"figure": 2, "LimitCheck": 3}
+"""Of those who take a figure, which argument says its unit."""
 
 
-def _keys() -> Iterator[str]:
-    """Keys of mappings, and the fields of classes, which become keys where a record is made."""
-    for _, module in _modules():
-        for node in ast.walk(module):
-            if isinstance(node, ast.Dict):
-                for key in node.keys:
-                    # Of a key that is put together its end has the unit.
-                    last = key.values[-1] if isinstance(key, ast.JoinedStr) else key
-                    if isinstance(last, ast.Constant) and isinstance(last.value, str):
-                        yield last.value
-            elif isinstance(node, ast.ClassDef):
-                for field in node.body:
-                    if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
-                        yield field.target.id
+class Written(ast.NodeVisitor):
+    """What is written in the packages of WRITERS."""
+
+    def __init__(self) -> None:
+        self.keys: set[str] = set()
+        """Keys of mappings, and the fields of classes, which become keys where a record is made."""
+        self.units: list[tuple[str, object]] = []
+        """Units of figures, with their places."""
+        for package in WRITERS:
+            for path in sorted((SOURCE / package).rglob("*.py")):
+                self._file = path.name
+                self.visit(ast.parse(path.read_text(encoding="utf-8")))
+
+    def visit_Dict(self, node: ast.Dict) -> None:
+        for key in node.keys:
+            # Of a key that is put together its end has the unit.
+            last = key.values[-1] if isinstance(key, ast.JoinedStr) else key
+            if isinstance(last, ast.Constant) and isinstance(last.value, str):
+                self.keys.add(last.value)
+        self.generic_visit(node)
+
+    def visit_ClassDef(self, node: ast.ClassDef) -> None:
+        for field in node.body:
+            if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
+                self.keys.add(field.target.id)
+        self.generic_visit(node)
+
+    def visit_Call(self, node: ast.Call) -> None:
+        called = getattr(node.func, "attr", getattr(node.func, "id", ""))
+        place = PLACE_OF_UNIT.get(called)
+        if place is not None and len(node.args) > place:
+            unit = node.args[place]
+            if isinstance(unit, ast.Constant):
+                self.units.append((f"{self._file}:{node.lineno}", unit.value))
+        self.generic_visit(node)
+
+
+@cache
+def written() -> Written:
+    """Read by the first test that asks: every worker collects this file, and few run it."""
+    return Written()
 
 
 UNITS_ALONE = frozenset({SIX_MM_DEG, "_n_m", "n_m", "n_mm"}) | WRITTEN_POSES
 NOT_WRITTEN = frozenset({"sigma_n_m"})
 """Of a stiffness, which records have in N/mm."""
-KEYS = (
-    frozenset(key for key in _keys() if re.fullmatch(r"[a-z0-9_]*_[a-z0-9]+", key))
-    - UNITS_ALONE
-    - NOT_WRITTEN
-)
+
+
+def keys() -> set[str]:
+    found = {key for key in written().keys if re.fullmatch(r"[a-z0-9_]*_[a-z0-9]+", key)}
+    return found - UNITS_ALONE - NOT_WRITTEN
 
 
 def test_no_key_ends_in_what_the_pages_do_not_know() -> None:
     unknown = []
-    for key in KEYS:
+    for key in keys():
         name, unit = without_unit(key.removesuffix(SIX_MM_DEG))
         last = name.rsplit("_", 1)[-1]
         if unit:
@@ -99,7 +124,7 @@ def test_no_key_ends_in_what_the_pages_do_not_know() -> None:
 
 
 def test_each_newton_metre_is_stated_to_be_a_moment_or_a_rise_of_force() -> None:
-    found = {key for key in KEYS if key.endswith("_n_m")}
+    found = {key for key in keys() if key.endswith("_n_m")}
     assert found == MOMENTS | RISES, "newtons times metres, or newtons per metre?"
     assert {key: without_unit(key)[1] for key in found} == {
         key: "N/m" if key in RISES else "N·m" for key in found
@@ -107,20 +132,9 @@ def test_each_newton_metre_is_stated_to_be_a_moment_or_a_rise_of_force() -> None
 
 
 def test_figures_and_checks_are_in_units_that_the_pages_know() -> None:
-    place_of_unit = {"figure": 2, "LimitCheck": 3}
-    odd = []
-    for path, module in _modules():
-        for node in ast.walk(module):
-            if not isinstance(node, ast.Call):
-                continue
-            called = getattr(node.func, "attr", getattr(node.func, "id", ""))
-            place = place_of_unit.get(called)
-            if place is None or len(node.args) <= place:
-                continue
-            unit = node.args[place]
-            if isinstance(unit, ast.Constant) and unit.value not in KNOWN_UNITS | OTHER_UNITS:
-                odd.append(f"{path.name}:{node.lineno}: {unit.value!r}")
-    assert not odd
+    units = written().units
+    assert len(units) > 50
+    assert [one for one in units if one[1] not in KNOWN_UNITS | OTHER_UNITS] == []
 
 
 @pytest.mark.parametrize(
@@ -140,11 +154,11 @@ def test_compound_units(key: str, name: str, unit: str) -> None:
 
 
 def test_pages_have_one_unit_for_each_quantity() -> None:
-    written = {
+    in_record = {
         "depth_m": 0.01197, "seat_slope_n_m": 106871.0, "tilt_rad": 0.1, "touch_speed_m_s": 0.0014,
         "plays_m": [0.001, None], "steps_m": 2, "inserted": True,
     }  # fmt: skip
-    assert list(facts(written)) == [
+    assert list(facts(in_record)) == [
         ("depth", "11.97 mm"),
         ("seat slope", "106.9 N/mm"),
         ("tilt", "5.73°"),
