@@ -29,7 +29,7 @@ STOLEN_SHARE = 0.03
 
 The programs that a test has started may stand still while the test itself does not.
 """
-_LOOK_S = 0.01
+_LOOK_S = 0.025
 _PROPERTY = "machine stood still"
 
 

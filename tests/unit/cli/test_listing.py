@@ -17,6 +17,7 @@ from cellctl.cli.listing import BROUGHT, CELL, FILES, OPERATOR, Listed
 from cellctl.cli.operator import commands as operator_commands
 from cellctl.records import RunStore
 from cellctl.version import software
+from tests.rigs.sweeps import sweep
 from tests.unit.records.sample import good_run
 
 ROOT = Path(__file__).parents[3]
@@ -76,20 +77,16 @@ MESSAGES = ("cellctl.api.local_socket.messages",)
 
 
 @pytest.mark.parametrize(
-    ("words", "besides"),
+    ("commands", "besides"),
     [
-        ("--help", MESSAGES),
-        ("status", ()),
-        ("faults 207", MESSAGES),
-        ("faults", ()),
-        ("runs list --data-dir absent", MESSAGES),
-        ("runs --help", ()),
+        (("--help", "faults 207", "runs list --data-dir absent"), MESSAGES),
+        (("status", "faults", "runs --help"), ()),
     ],
 )
-def test_a_command_that_computes_nothing_loads_nothing_that_computes(
-    words: str, besides: tuple[str, ...]
+def test_commands_that_compute_nothing_load_nothing_that_computes(
+    commands: tuple[str, ...], besides: tuple[str, ...]
 ) -> None:
-    assert loaded_by(words, heavy=HEAVY + besides)[1] == ""
+    assert loaded_by(*commands, heavy=HEAVY + besides)[1] == ""
 
 
 def test_runs_are_listed_without_the_database_layer(tmp_path: Path) -> None:
@@ -107,15 +104,18 @@ statistics."""
 
 
 @pytest.mark.parametrize(
-    ("names", "besides"),
-    [(("deck", "antenna"), ()), (("insertion-pin", "small"), FINDS_ROOTS)],
+    ("name", "besides"),
+    sweep(
+        (("deck", ()), ("antenna", ()), ("insertion-pin", FINDS_ROOTS), ("small", FINDS_ROOTS)),
+        (("deck", ()), ("insertion-pin", FINDS_ROOTS)),
+    ),
 )
 def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(
-    names: tuple[str, ...], besides: tuple[str, ...]
+    name: str, besides: tuple[str, ...]
 ) -> None:
     heavy = ("matplotlib", "cv2", "sqlalchemy", "pandas", *besides)
-    out, found = loaded_by(*(f"check config/{name}.toml" for name in names), heavy=heavy)
-    assert out.count("good.") == len(names), out
+    out, found = loaded_by(f"check config/{name}.toml", heavy=heavy)
+    assert "good." in out
     assert found == ""
 
 

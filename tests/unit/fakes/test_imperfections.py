@@ -1,6 +1,6 @@
 """The catalogue of imperfections: names, scales, and streams that do not disturb each other."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -13,9 +13,20 @@ from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
 from fakes.scenes.load import load
 from fakes.world.scene import StereoTruth
+from tests.rigs.sweeps import sweep
 
 CONFIG = Path(__file__).parents[3] / "config"
 SHIPPED = CONFIG / "deck.scenario.toml"
+
+
+RENDERED = ("image_noise", "uneven_light", "glare", "tilt_shading", "deck_flex")
+"""What the renderer makes of a scene: the seeds that a scene carries have a test of their own."""
+
+
+def quickly(names: Sequence[str]) -> list[object]:
+    """The first of each kind of seed; all others are figures."""
+    kinds = {CATALOGUE[name].drawn_by: name for name in reversed(names) if name not in RENDERED}
+    return sweep(names, kinds.values())
 
 
 def test_each_has_a_size_of_its_own_or_in_the_file_and_a_source() -> None:
@@ -82,14 +93,10 @@ def _drawn_without_any() -> np.ndarray:
     return _drawn({})
 
 
-@pytest.mark.parametrize("name", [name for name, one in CATALOGUE.items() if not one.keys])
+@pytest.mark.parametrize("name", quickly([name for name, one in CATALOGUE.items() if not one.keys]))
 def test_switching_one_on_leaves_the_draws_of_the_others(name: str) -> None:
     """A size of almost nothing changes the world by almost nothing."""
     np.testing.assert_allclose(_drawn({name: 1e-9}), _drawn_without_any(), atol=1e-6)
-
-
-RENDERED = ("image_noise", "uneven_light", "glare", "tilt_shading", "deck_flex")
-"""What the renderer makes of a scene: the seeds that a scene carries have a test of their own."""
 
 
 def _scenario(scales: Mapping[str, float], hardware_seed: int) -> DeckScenario:
@@ -149,24 +156,7 @@ def _alike(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bo
     )
 
 
-SEEN = sorted(CATALOGUE.keys() - set(RENDERED))
-
-
-def _first_drawn_by(kind: str | None) -> str:
-    return min(name for name, one in CATALOGUE.items() if one.drawn_by == kind and name in SEEN)
-
-
-QUICK = {_first_drawn_by(kind) for kind in {CATALOGUE[name].drawn_by for name in SEEN}}
-"""One of each kind of seed. All others are figures."""
-
-
-@pytest.mark.parametrize(
-    "name",
-    [
-        *sorted(QUICK),
-        *(pytest.param(one, marks=pytest.mark.figures) for one in SEEN if one not in QUICK),
-    ],
-)
+@pytest.mark.parametrize("name", quickly(sorted(CATALOGUE.keys() - set(RENDERED))))
 def test_each_is_drawn_by_the_seed_that_the_catalogue_says(name: str) -> None:
     effect = _effect(name, hardware_seed=1, seed=1)
     assert effect, "it acts on nothing that can be seen"

@@ -189,7 +189,11 @@ while delivery.deliver(3):
 @pytest.mark.parametrize(
     ("where", "after"),
     [
-        ("_insert", 5), ("_fill", 0), ("_upsert", 4), ("_delivered", 3),
+        ("_insert", 5),
+        *(
+            pytest.param(where, after, marks=pytest.mark.figures)
+            for where, after in (("_fill", 0), ("_upsert", 4), ("_delivered", 3))
+        ),
         *(
             pytest.param(where, after, marks=pytest.mark.long)
             for where, after in

@@ -21,6 +21,7 @@ from benchmarks.antenna.chain.trials import CONTACTS_M
 from benchmarks.antenna.insertion.trials import FAULTS, GOOD, KINDS, run_insertion
 from cellctl.geometry.pose import pose_error
 from fakes.world.connector.drawing import SOCKET_T_MATED_PLUG, ContactKind
+from tests.rigs.sweeps import sweep
 
 EXACT = Repeatability("exact", 0.0, 0.0)
 POSES = [PLUG_STATION * FLANGE_T_PLUG.inv(), SOCKET * FLANGE_T_PLUG.inv()]
@@ -62,7 +63,7 @@ def test_an_exact_camera_finds_the_contacts_in_their_plane() -> None:
     np.testing.assert_allclose(seen.pose.as_matrix(), (plane * shift).as_matrix(), atol=1e-12)
 
 
-@pytest.mark.parametrize("kind", ["pins", "holes"])
+@pytest.mark.parametrize("kind", sweep(("pins", "holes"), ("pins",)))
 def test_a_camera_with_images_finds_what_the_drawn_one_finds(kind: ContactKind) -> None:
     drawn = DrawnOptics.draw(np.random.default_rng(4), 0.0)
     exact = DrawnOptics(drawn.true, drawn.true, np.zeros(2))

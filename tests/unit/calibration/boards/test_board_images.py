@@ -1,4 +1,5 @@
 import re
+from functools import cache
 
 import cv2
 import numpy as np
@@ -51,6 +52,14 @@ def draw(board: CalibrationBoard, homography: Array, *, samples: int = 8) -> Ima
     return np.clip(np.rint(cv2.GaussianBlur(grey, (0, 0), 1.0)), 0, 255).astype(np.uint8)
 
 
+@cache
+def drawn(number: int, samples: int) -> Image:
+    """The chessboard in a view, for tests that do not write into it."""
+    image = draw(BOARD, view(number), samples=samples)
+    image.flags.writeable = False
+    return image
+
+
 def _where(board: CalibrationBoard, homography: Array) -> tuple[slice, slice]:
     """Columns and rows of the image that hold the whole board."""
     ends = [(x, y) for x in (-1, board.columns) for y in (-1, board.rows)]
@@ -72,7 +81,7 @@ def expected(board: CalibrationBoard, homography: Array) -> Array:
 @pytest.mark.parametrize("number", range(3))
 def test_corners_are_sub_pixel_and_in_the_board_order(number: int) -> None:
     homography = view(number)
-    corners = detect_corners(draw(BOARD, homography, samples=32), BOARD)
+    corners = detect_corners(drawn(number, 32), BOARD)
     assert corners is not None
     np.testing.assert_array_equal(corners.ids, np.arange(54))
     assert np.abs(corners.pixels - expected(BOARD, homography)).max() < 0.05
@@ -80,7 +89,7 @@ def test_corners_are_sub_pixel_and_in_the_board_order(number: int) -> None:
 
 def test_order_follows_the_colours_when_the_camera_is_upside_down() -> None:
     homography = view(1)
-    image = draw(BOARD, homography, samples=32)
+    image = drawn(1, 32)
     corners = detect_corners(np.ascontiguousarray(image[::-1, ::-1]), BOARD)
     assert corners is not None
     upright = np.array(SIZE) - 1 - corners.pixels
@@ -106,7 +115,7 @@ def test_charuco_in_part() -> None:
 
 
 def pairs(count: int = 3) -> list[BoardImages]:
-    images = [draw(BOARD, view(number), samples=4) for number in range(count)]
+    images = [drawn(number, 4) for number in range(count)]
     return [BoardImages(f"p{n}", image, image) for n, image in enumerate(images)]
 
 
@@ -176,7 +185,7 @@ def test_no_board_at_all() -> None:
 @pytest.mark.parametrize("margin", [0.15, 0.4])
 def test_a_whole_board_with_a_narrow_margin_is_taken(margin: float) -> None:
     homography = view(1)
-    image = draw(BOARD, homography, samples=32)
+    image = drawn(1, 32).copy()
     ends = np.array([(x, y) for x, y in ((-1, -1), (9, -1), (9, 6), (-1, 6))], dtype=float)
     middle = ends.mean(axis=0)
     ends += np.sign(ends - middle) * margin

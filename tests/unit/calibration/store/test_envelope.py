@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import shutil
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -57,8 +58,9 @@ def head() -> StereoResult:
     return calibrate_stereo(make_views(np.random.default_rng(0), 10), BOARD, IMAGE_SIZE)
 
 
-@pytest.fixture
-def folder(tmp_path: Path, head: StereoResult) -> Path:
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory, head: StereoResult) -> Path:
+    folder = tmp_path_factory.mktemp("made")
     results: list[StereoResult | BaseFrameResult | TransferResult] = [
         head,
         head,
@@ -67,8 +69,14 @@ def folder(tmp_path: Path, head: StereoResult) -> Path:
     ]
     for kind, result in zip(GEOMETRY, results, strict=True):
         record, serial = result.to_record(), f"SN-{kind.name}"
-        write_stored(tmp_path, StoredCalibration(kind.name, record, MADE, UNTIL, "cellctl", serial))
-    return tmp_path
+        write_stored(folder, StoredCalibration(kind.name, record, MADE, UNTIL, "cellctl", serial))
+    return folder
+
+
+@pytest.fixture
+def folder(tmp_path: Path, made: Path) -> Path:
+    """A copy of what was solved once, for each test to spoil."""
+    return Path(shutil.copytree(made, tmp_path / "calibrations"))
 
 
 def test_what_is_written_is_what_production_reads(folder: Path, head: StereoResult) -> None:

@@ -22,6 +22,7 @@ from cellctl.records.entries import RunResult
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.steps import StepSpec
+from tests.rigs.sweeps import sweep
 from tests.unit.records.conftest import start
 
 
@@ -65,7 +66,9 @@ async def test_a_module_that_met_force_does_not_come_again(
 
 
 @pytest.mark.parametrize("result", [one for one in RunResult if one is not RunResult.GOOD])
-@pytest.mark.parametrize("fault", [None, ForceLimitExceeded.number])
+@pytest.mark.parametrize(
+    "fault", sweep((None, ForceLimitExceeded.number), (ForceLimitExceeded.number,))
+)
 async def test_a_module_whose_insertion_nobody_judged_does_not_come_again(
     store: AsyncRunStore, result: RunResult, fault: int | None
 ) -> None:

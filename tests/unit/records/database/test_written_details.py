@@ -16,6 +16,7 @@ from cellctl.records.entries import Document, RunDetail
 from cellctl.records.figures import Limit, figure
 from cellctl.records.files.motion_file import MotionWriter
 from cellctl.records.files.unfinished import MOTION
+from tests.rigs.sweeps import sweep
 from tests.unit.records.conftest import start
 
 ALTERED = "what was written of run 1 was changed after it was sealed"
@@ -74,7 +75,7 @@ def test_a_run_that_nobody_changes_is_good(store: RunStore) -> None:
     assert store.verify() == []
 
 
-@pytest.mark.parametrize("edit", EDITS)
+@pytest.mark.parametrize("edit", sweep(EDITS, EDITS[:2]))
 def test_an_edit_of_an_open_run_is_named_at_closing_and_ever_after(
     store: RunStore, edit: str
 ) -> None:

@@ -1,5 +1,7 @@
 """ChArUco boards: found whole although blurred and tilted, and told from their mirror images."""
 
+from itertools import product
+
 import cv2
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from cellctl.interfaces.stereo_camera import Image
 from fakes.render import api
 from fakes.render.optics.lens import project
 from tests.rigs.calibration.circle_boards import BOARD_FROM_DRAWN, head
+from tests.rigs.sweeps import sweep
 
 BOARD = CalibrationBoard(8, 5, 0.02, Charuco("5X5_100", 0.014))
 HEAD = head()
@@ -31,10 +34,13 @@ def picture(
     return np.asarray(blurred, dtype=np.uint8), truth
 
 
+WHOLE_DEG = ((10.0, 25.0, 170.0), (-20.0, 15.0, 30.0), (25.0, -10.0, -95.0))
+
+
 @pytest.mark.parametrize(
-    "tilt_deg", [(10.0, 25.0, 170.0), (-20.0, 15.0, 30.0), (25.0, -10.0, -95.0)]
+    ("tilt_deg", "blur_px"),
+    sweep(product(WHOLE_DEG, (0.0, 2.2)), ((WHOLE_DEG[0], 0.0), (WHOLE_DEG[2], 2.2))),
 )
-@pytest.mark.parametrize("blur_px", [0.0, 2.2])
 def test_all_corners_of_a_whole_board(tilt_deg: tuple[float, float, float], blur_px: float) -> None:
     image, truth = picture(tilt_deg, 0.06, blur_px)
     corners = detect_corners(image, BOARD)
@@ -57,13 +63,16 @@ def test_no_board_is_none() -> None:
 
 @pytest.mark.parametrize(
     ("tilt_deg", "farther_m", "blur_px"),
-    [
-        ((24.0, -21.0, -65.0), 0.9, 0.0),
-        ((-9.0, -7.0, -164.0), 1.05, 0.8),
-        ((35.0, 12.0, -96.0), 0.7, 0.8),
-        ((10.0, 30.0, 20.0), 0.1, 1.5),
-        ((-30.0, 25.0, 118.0), 0.0, 0.0),
-    ],
+    sweep(
+        (
+            ((24.0, -21.0, -65.0), 0.9, 0.0),
+            ((-9.0, -7.0, -164.0), 1.05, 0.8),
+            ((35.0, 12.0, -96.0), 0.7, 0.8),
+            ((10.0, 30.0, 20.0), 0.1, 1.5),
+            ((-30.0, 25.0, 118.0), 0.0, 0.0),
+        ),
+        (((24.0, -21.0, -65.0), 0.9, 0.0), ((35.0, 12.0, -96.0), 0.7, 0.8)),
+    ),
 )
 def test_markers_do_not_pull_corners_that_are_far_and_tilted(
     tilt_deg: tuple[float, float, float], farther_m: float, blur_px: float

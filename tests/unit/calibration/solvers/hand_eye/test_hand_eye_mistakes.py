@@ -13,6 +13,7 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Se
 from cellctl.errors.calibration import RobotCameraMismatch
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
 from tests.rigs.calibration.hand_eye_views import make_poses
+from tests.rigs.sweeps import sweep
 
 Change = Callable[[RigidTransform], RigidTransform]
 
@@ -46,7 +47,7 @@ def changed(
     return poses
 
 
-@pytest.mark.parametrize("setup", Setup)
+@pytest.mark.parametrize("setup", sweep(Setup, (Setup.EYE_IN_HAND,)))
 @pytest.mark.parametrize(
     ("flange", "board", "words"),
     [

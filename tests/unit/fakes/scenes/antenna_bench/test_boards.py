@@ -19,6 +19,7 @@ from fakes.world.arm import inverse
 from fakes.world.connector.scene import SceneMarks
 from fakes.world.frames import MM, from_written, to_written
 from fakes.world.scene import SceneChessboard
+from tests.rigs.sweeps import sweep
 from tests.unit.fakes.scenes.antenna_bench.placed_arm import bench_at, bench_with
 
 CONFIG = Path(__file__).parents[5] / "config"
@@ -65,7 +66,10 @@ def print_px(world: AntennaBench, camera: str) -> NDArray[np.float64]:
 
 @pytest.mark.parametrize(
     ("taught", "camera", "where"),
-    [("board_look", "camera_1", "table"), ("board_show", "camera_2", "flange")],
+    sweep(
+        (("board_look", "camera_1", "table"), ("board_show", "camera_2", "flange")),
+        (("board_look", "camera_1", "table"),),
+    ),
 )
 def test_all_of_the_board_is_seen_from_every_calibration_pose(
     scenario: BenchScenario, taught: str, camera: str, where: str
@@ -130,7 +134,10 @@ def dots(world: AntennaBench, camera: str) -> SceneMarks:
 
 @pytest.mark.parametrize(
     ("taught", "camera", "side"),
-    [("reference_look", "camera_1", "above"), ("inspect_plug", "camera_2", "below")],
+    sweep(
+        (("reference_look", "camera_1", "above"), ("inspect_plug", "camera_2", "below")),
+        (("inspect_plug", "camera_2", "below"),),
+    ),
 )
 def test_both_cameras_see_the_dots_of_the_plate_as_drawn(
     scenario: BenchScenario, taught: str, camera: str, side: Literal["above", "below"]

@@ -96,14 +96,23 @@ def pressing(begin_mm: float, n_per_mm: float, component: int = 2, lever_m: floa
 @pytest.mark.parametrize(
     ("wrench", "fault"),
     [
-        (pressing(0.0, 400.0), PlugEarlyContact),
-        (pressing(0.0, 115.0, lever_m=4.0e-3), PlugBentPin),
-        (pressing(0.1, 50.0, component=0), PlugSideForce),
-        (pressing(0.6, 10.0, component=1), PlugSideForce),
-        (pressing(1.0, 60.0), PlugOverForce),
-        (lambda depth_mm: (*good(min(depth_mm, 2.4))[:3], 0.0, 0.0, 0.0), PlugShortSeat),
+        pytest.param(pressing(0.0, 400.0), PlugEarlyContact, id="on the face"),
+        pytest.param(pressing(0.0, 115.0, lever_m=4.0e-3), PlugBentPin, id="one pin"),
+        pytest.param(pressing(0.1, 50.0, component=0), PlugSideForce, id="side in the entry"),
+        pytest.param(
+            pressing(0.6, 10.0, component=1),
+            PlugSideForce,
+            id="side later",
+            marks=pytest.mark.figures,
+        ),
+        pytest.param(pressing(1.0, 60.0), PlugOverForce, id="too much", marks=pytest.mark.figures),
+        pytest.param(
+            lambda depth_mm: (*good(min(depth_mm, 2.4))[:3], 0.0, 0.0, 0.0),
+            PlugShortSeat,
+            id="no seat",
+            marks=pytest.mark.figures,
+        ),
     ],
-    ids=["on the face", "one pin", "side in the entry", "side later", "too much", "no seat"],
 )
 async def test_what_goes_wrong_is_named_before_anything_is_ruined(
     wrench: Wrench, fault: type[PluggingError]

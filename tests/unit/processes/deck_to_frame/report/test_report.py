@@ -51,6 +51,7 @@ from cellctl.records.report.acceptance.table import acceptance as acceptance_tab
 from cellctl.records.report.export import export_run
 from cellctl.records.report.sections import ReportTable
 from tests.rigs.grey import confusable
+from tests.rigs.sweeps import sweep
 from tests.unit.records.conftest import start
 from tests.unit.records.page import Checker, read, text_of
 from tests.unit.records.sample import SIGMA, force_curve, good_run
@@ -264,7 +265,7 @@ OLD = Path(__file__).parents[4] / "data" / "store-v1"
 
 @pytest.mark.parametrize(
     "number",
-    [pytest.param(1, marks=pytest.mark.long), 2, pytest.param(3, marks=pytest.mark.long), 4, 5],
+    [*sweep((2, 4, 5), (5,)), *(pytest.param(number, marks=pytest.mark.long) for number in (1, 3))],
 )
 def test_every_number_of_an_old_report_is_in_the_new_one(tmp_path: Path, number: int) -> None:
     shutil.copytree(OLD, tmp_path / "old")
