@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,19 @@ def table_1_head() -> StereoHead:
         np.asarray(right_T_left.translation),
         0.1,
     )
+
+
+def cut_head() -> StereoHead:
+    """The same head with sensors that end beside the plate: a third of the pixels to render and to
+    search, and each hole as large as in the whole image."""
+    whole = table_1_head()
+
+    def cut(camera: CameraModel) -> CameraModel:
+        matrix = camera.camera_matrix.copy()
+        matrix[:2, 2] -= (624.0, 195.0)
+        return replace(camera, camera_matrix=matrix)
+
+    return replace(whole, image_size=(1200, 1600), left=cut(whole.left), right=cut(whole.right))
 
 
 def write_stereo_head(path: Path, head: StereoHead, extra: Mapping[str, Any] | None = None) -> None:

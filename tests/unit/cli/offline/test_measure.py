@@ -15,14 +15,14 @@ from cellctl.cli.offline.measure import measure
 from cellctl.vision.picture import INSET_PX
 from tests.unit.vision.plates import (
     Light,
+    cut_head,
     holes_triangle,
     plate_facing,
     render_pair,
-    table_1_head,
     write_stereo_head,
 )
 
-HEAD, POSE = table_1_head(), plate_facing(3.0, -2.0, 2.0)
+HEAD, POSE = cut_head(), plate_facing(3.0, -2.0, 2.0)
 HOLES = holes_triangle(("pin", "pin", "countersink"))
 
 
@@ -64,7 +64,8 @@ def test_the_result_is_json_in_mm(folder: Path) -> None:
     assert np.array(data["holes"]["P1"]["left_covariance_px2"]).shape == (2, 2)
     drawn = cv2.imread(str(picture))
     assert drawn is not None
-    assert drawn.shape == (2048 + INSET_PX, 4896, 3)
+    width, height = HEAD.image_size
+    assert drawn.shape == (height + INSET_PX, 2 * width, 3)
 
 
 def test_the_paper_by_name_on_stdout(folder: Path) -> None:
