@@ -249,8 +249,9 @@ test-version: venv
 test-cell: venv
 	$(BIN)/pytest tests/cell -m "not long" --durations 25
 
-# Accuracy over many draws and sweeps over every key: what holds for all code, at more seconds than
-# whoever changes one part of it will wait. `.ci/run` runs them after `make test`.
+# Accuracy over many draws, sweeps over every key, and of the other sweeps what is not their typical
+# case: what holds for all code, at more seconds than whoever changes one part of it will wait.
+# `.ci/run` runs them after `make test`.
 test-figures: venv
 	$(BIN)/pytest -n 3 -m "figures and not cell and not long" --durations 25 || \
 		$(BIN)/pytest -m "figures and not cell and not long" $(AGAIN)

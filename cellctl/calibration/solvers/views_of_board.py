@@ -2,16 +2,13 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import compress, pairwise
+from itertools import compress
 from typing import Generic, Self, TypeVar
 
-import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cellctl.calibration.boards.board import CalibrationBoard, Corners
+from cellctl.calibration.boards.board import CalibrationBoard
 from cellctl.calibration.boards.board_shape import ShapeModes
-from cellctl.calibration.boards.projection import Projection
-from cellctl.calibration.solvers.bundle import LinearImage, by_board_pose
 from cellctl.calibration.solvers.view_rejection import Mask
 from cellctl.geometry.pose import Array
 
@@ -44,42 +41,6 @@ class BoardPoses:
             view_rotations=turns @ self.view_rotations,
             view_translations_m=self.view_translations_m + views[:, :3],
         )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlacedCorners:
-    """The corners that one camera saw in all views, view after view, where the unknowns have them.
-
-    All in one array: an image has some fifty corners, and for so few the calls of an adjustment of
-    each image by itself take longer than the numbers.
-    """
-
-    pixels: Array
-    """Measured, shape (n, 2)."""
-    counts: Sequence[int]
-    """Corners in each view."""
-    rotations: Array
-    """camera_R_board of each corner, shape (n, 3, 3)."""
-    shape: Array
-    """Derivative of its place on the board by the board's shape, m, shape (n, 3, k)."""
-    turned_m: Array
-    """Turned into the first camera's frame but not yet shifted, shape (n, 3)."""
-    points_m: Array
-    """In the first camera's frame, shape (n, 3)."""
-
-    def by_shape(self, projection: Projection) -> Array:
-        """Derivative of a projection by the board's shape, shape (n, 2, k)."""
-        return projection.by_point @ self.rotations @ self.shape
-
-    def linearised(self, projection: Projection, by_shared: Array) -> list[LinearImage]:
-        """The image of each view, of the projections of all; ``by_shared`` has shape (n, 2, s)."""
-        residuals = self.pixels - projection.pixels
-        by_view = by_board_pose(projection, self.turned_m)
-        ends = np.cumsum([0, *self.counts]).tolist()
-        return [
-            LinearImage(residuals[begin:end], by_shared[begin:end], by_view[begin:end])
-            for begin, end in pairwise(ends)
-        ]
 
 
 V = TypeVar("V")
@@ -116,21 +77,4 @@ class ViewsOfBoard(Generic[V, S]):
             shared,
             view_rotations=views.view_rotations,
             view_translations_m=views.view_translations_m,
-        )
-
-    def placed(self, images: Sequence[Corners], shape: Array, state: S) -> PlacedCorners:
-        """The corners of ``images``, one for each view, on a board of ``shape``, shape (k,)."""
-        ids = np.concatenate([corners.ids for corners in images])
-        counts = [len(corners.ids) for corners in images]
-        modes = self.modes.modes[ids]
-        rotations = np.repeat(state.view_rotations, counts, axis=0)
-        board_m = self.flat_m[ids] + modes @ shape
-        turned_m = (rotations @ board_m[:, :, None])[:, :, 0]
-        return PlacedCorners(
-            pixels=np.concatenate([corners.pixels for corners in images]),
-            counts=counts,
-            rotations=rotations,
-            shape=modes,
-            turned_m=turned_m,
-            points_m=turned_m + np.repeat(state.view_translations_m, counts, axis=0),
         )

@@ -111,6 +111,7 @@ def test_what_a_server_has_no_room_for_arrives_when_it_has(fleet: Fleet, disk: S
     assert_whole(fleet, NORTH, store)
 
 
+@pytest.mark.figures  # of a server that dies, and of a disk without room, each has a test above
 def test_a_server_that_dies_of_its_full_disk_is_started_again(
     fleet: Fleet, disk: SmallDisk
 ) -> None:

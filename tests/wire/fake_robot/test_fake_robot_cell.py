@@ -17,6 +17,9 @@ ROBOT_PORTS = [
     f"{robot}.{channel}" for robot in ("main", "aux_1", "aux_2") for channel in ("CMD", "STA")
 ]
 FREE = ["main.GRD", "force", "control", "tracker", "head_1", "head_2"]
+START_S = 120
+"""Only a program that never starts takes so long: beside other tests it loads its libraries for
+half a minute."""
 
 
 @asynccontextmanager
@@ -33,7 +36,7 @@ async def running(
     )  # fmt: skip
     assert process.stdout is not None
     try:
-        line = await asyncio.wait_for(process.stdout.readline(), 30)
+        line = await asyncio.wait_for(process.stdout.readline(), START_S)
         yield process, json.loads(line)
     finally:
         if process.returncode is None:

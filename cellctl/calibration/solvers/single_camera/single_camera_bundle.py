@@ -8,10 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellctl.calibration.boards.board import CameraView
+from cellctl.calibration.boards.board import CameraView, Corners
 from cellctl.calibration.boards.lens_model import LensModel, longer_terms_prior
 from cellctl.calibration.boards.projection import project
-from cellctl.calibration.solvers.bundle import LinearImage
+from cellctl.calibration.solvers.bundle import (
+    LinearImage,
+    by_board_pose,
+)
 from cellctl.calibration.solvers.views_of_board import BoardPoses, ViewsOfBoard
 from cellctl.geometry.pose import Array
 
@@ -55,10 +58,18 @@ class CameraProblem(ViewsOfBoard[CameraView, CameraBundle]):
 
     def linearise(self, state: CameraBundle) -> list[tuple[LinearImage]]:
         """Residuals and derivatives of each image of each view."""
-        corners = self.placed([view.corners for view in self.views], state.shape, state)
-        projection = project(state.camera, corners.points_m)
-        by_shared = np.concatenate([projection.by_camera, corners.by_shape(projection)], axis=2)
-        return [(image,) for image in corners.linearised(projection, by_shared)]
+        return [(self._image(view.corners, state, i),) for i, view in enumerate(self.views)]
+
+    def _image(self, corners: Corners, state: CameraBundle, index: int) -> LinearImage:
+        shape = self.modes.modes[corners.ids]
+        board_m = self.flat_m[corners.ids] + shape @ state.shape
+        rotation = state.view_rotations[index]
+        turned = board_m @ rotation.T
+        projection = project(state.camera, turned + state.view_translations_m[index])
+        by_shape = projection.by_point @ rotation @ shape
+        by_shared = np.concatenate([projection.by_camera, by_shape], axis=2)
+        by_view = by_board_pose(projection, turned)
+        return LinearImage(corners.pixels - projection.pixels, by_shared, by_view)
 
     def moved(self, state: CameraBundle, shared: Array, views: Array) -> CameraBundle:
         """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""

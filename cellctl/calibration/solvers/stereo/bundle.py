@@ -9,11 +9,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from cellctl.calibration.boards.board import BoardView
+from cellctl.calibration.boards.board import BoardView, Corners
 from cellctl.calibration.boards.lens_model import LensModel, longer_terms_prior
-from cellctl.calibration.boards.projection import Projection, project
-from cellctl.calibration.solvers.bundle import LinearImage
-from cellctl.calibration.solvers.views_of_board import BoardPoses, PlacedCorners, ViewsOfBoard
+from cellctl.calibration.boards.projection import project
+from cellctl.calibration.solvers.bundle import (
+    LinearImage,
+    by_board_pose,
+)
+from cellctl.calibration.solvers.views_of_board import BoardPoses, ViewsOfBoard
 from cellctl.geometry.pose import Array
 from cellctl.geometry.uncertain import skews
 
@@ -60,31 +63,37 @@ class StereoProblem(ViewsOfBoard[BoardView, BundleState]):
 
     def linearise(self, state: BundleState) -> list[tuple[LinearImage, ...]]:
         """Residuals and derivatives of each image of each view."""
-        left = self.placed([view.left for view in self.views], state.shape, state)
-        right = self.placed([view.right for view in self.views], state.shape, state)
-        return list(zip(self._in_left(left, state), self._in_right(right, state), strict=True))
+        return [
+            (
+                self._image(view.left, state, index, is_right=False),
+                self._image(view.right, state, index, is_right=True),
+            )
+            for index, view in enumerate(self.views)
+        ]
 
-    def _in_left(self, corners: PlacedCorners, state: BundleState) -> list[LinearImage]:
-        projection = project(state.left, corners.points_m)
-        by_shared = self._by_shared(corners, projection)
-        by_shared[:, :, : len(state.left)] = projection.by_camera
-        return corners.linearised(projection, by_shared)
-
-    def _in_right(self, corners: PlacedCorners, state: BundleState) -> list[LinearImage]:
-        moved = corners.points_m @ state.rotation.T
-        seen = project(state.right, moved + state.translation_m)
-        projection = replace(seen, by_point=seen.by_point @ state.rotation)
+    def _image(
+        self, corners: Corners, state: BundleState, index: int, *, is_right: bool
+    ) -> LinearImage:
+        shape = self.modes.modes[corners.ids]
+        board_m = self.flat_m[corners.ids] + shape @ state.shape
+        rotation = state.view_rotations[index]
+        turned = board_m @ rotation.T
+        in_left = turned + state.view_translations_m[index]
         head, camera = self.head, len(state.left)
-        by_shared = self._by_shared(corners, projection)
-        by_shared[:, :, camera : 2 * camera] = projection.by_camera
-        by_shared[:, :, head - 6 : head - 3] = -seen.by_point @ skews(moved)
-        by_shared[:, :, head - 3 : head] = seen.by_point
-        return corners.linearised(projection, by_shared)
-
-    def _by_shared(self, corners: PlacedCorners, projection: Projection) -> Array:
-        """Derivatives by the board's shape, and space for those by the head."""
-        head = np.zeros((len(corners.pixels), 2, self.head))
-        return np.concatenate([head, corners.by_shape(projection)], axis=2)
+        by_shared = np.zeros((len(board_m), 2, head + shape.shape[2]))
+        if is_right:
+            moved = in_left @ state.rotation.T
+            projection = project(state.right, moved + state.translation_m)
+            by_shared[:, :, camera : 2 * camera] = projection.by_camera
+            by_shared[:, :, head - 6 : head - 3] = -projection.by_point @ skews(moved)
+            by_shared[:, :, head - 3 : head] = projection.by_point
+            projection = replace(projection, by_point=projection.by_point @ state.rotation)
+        else:
+            projection = project(state.left, in_left)
+            by_shared[:, :, :camera] = projection.by_camera
+        by_shared[:, :, head:] = projection.by_point @ rotation @ shape
+        by_view = by_board_pose(projection, turned)
+        return LinearImage(corners.pixels - projection.pixels, by_shared, by_view)
 
     def moved(self, state: BundleState, shared: Array, views: Array) -> BundleState:
         """The unknowns after a step: ``shared`` of shape (s,), ``views`` of shape (views, 6)."""

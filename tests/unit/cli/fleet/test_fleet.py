@@ -68,8 +68,9 @@ def test_runs_of_all_cells_are_found(url: str) -> None:
     for words, found in FOUND.items():
         told = json.loads(run("runs", "--json", *words, url=url).stdout)
         assert [(one["cell"], one["number"]) for one in told] == found, words
+    for words in ((), ("--limit", "1"), ("--until", "2020-01-01")):
         listed = run("runs", *words, url=url)
-        assert len(re.findall(r"SAT-0042", listed.stdout)) == len(found), words
+        assert len(re.findall(r"SAT-0042", listed.stdout)) == len(FOUND[words]), words
 
 
 def test_a_part_that_a_gauge_has_spoilt_is_marked(url: str, fleet: Fleet) -> None:

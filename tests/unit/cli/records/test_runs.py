@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -20,8 +21,21 @@ from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run
 
 
+@pytest.fixture(scope="module")
+def two_runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store with a good run and one that is open, of which each test has a copy."""
+    store = RunStore(tmp_path_factory.mktemp("two") / "runs")
+    good_run(store)
+    start(store, "SAT-0043")
+    store.close()
+    return store.path
+
+
 @pytest.fixture
-def store(tmp_path: Path) -> Iterator[RunStore]:
+def store(tmp_path: Path, request: pytest.FixtureRequest) -> Iterator[RunStore]:
+    # Before it is opened, and only where the test asks for these runs.
+    if "folder" in request.fixturenames:
+        shutil.copytree(request.getfixturevalue("two_runs"), tmp_path / "runs")
     store = RunStore(tmp_path / "runs")
     yield store
     store.close()
@@ -34,8 +48,7 @@ def runner() -> CliRunner:
 
 @pytest.fixture
 def folder(store: RunStore) -> str:
-    good_run(store)
-    start(store, "SAT-0043")
+    """Of a store with two runs."""
     return str(store.path)
 
 
