@@ -95,7 +95,8 @@ def _issues(raw: dict[str, Any], folder: Path) -> tuple[list[ConfigIssue], CellC
     if cell is None:
         return found, None
     # Drivers first: the checks between sections ask them for figures such as the rate of a sensor.
-    found += _driver_issues(cell)
+    misread = {one.key for one in units}  # a driver names its range, the unit is the reason
+    found += [one for one in _driver_issues(cell) if one.key not in misread]
     found += [
         *taught_pose_issues(cell, found),
         *zone_issues(cell, found),

@@ -15,11 +15,15 @@ from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.clock import utc_now
 from cellctl.records.entries import AuditEntry, Calibration
-from cellctl.records.rejected import rejected, rejected_kinds
+from cellctl.records.procedure_entries import rejected, rejected_kinds
 from cellctl.spelling import nearest
 
 app = typer.Typer(help="Look into the calibrations of the run store.", no_args_is_help=True)
 
+_NONE = (
+    "none was made by a procedure of this run store. Those that the cell uses lie in "
+    "`calibration_dir` of its cell file; `cellctl status` lists them."
+)
 AsJson = Annotated[bool, typer.Option("--json", help="For programs.")]
 
 
@@ -35,10 +39,7 @@ def list_calibrations(*, as_json: AsJson = False, data_dir: DataDir = None) -> N
         _as_json(found)
         return
     if not found:
-        typer.echo(
-            "no calibrations: none was made by a procedure of this run store. Those that the cell "
-            "uses lie in `calibration_dir` of its cell file; `cellctl status` lists them."
-        )
+        typer.echo(f"no calibrations: {_NONE}")
     else:
         # Reasons hold whatever people have typed: brackets in it are no mark-up.
         console_of_tables().print(_newest(found))
@@ -89,7 +90,7 @@ def show(
     not_used = rejected(audit, kind)
     if not found and not (not_used and not as_json):
         kinds = sorted({one.kind for one in kept} | rejected_kinds(audit))
-        known = f"kinds here: {', '.join(kinds) or 'none'}"
+        known = f"kinds here: {', '.join(kinds)}" if kinds else _NONE
         typer.echo(f"no calibration of the kind {kind!r}; {nearest(kind, kinds)}{known}", err=True)
         raise typer.Exit(1)
     if as_json:

@@ -37,7 +37,7 @@ def trend(
     with opened_store(data_dir) as store:
         known = store.figure_keys()
         if not key:
-            typer.echo("\n".join(known))
+            _list_keys(known, as_json=as_json)
             return
         samples, unit = store.figure_history(key, recipe, limit)
     if len(samples) < 2:
@@ -54,6 +54,13 @@ def trend(
         console.print(line)
     for signal in found.signals:
         console.print(f"run {signal.run}: {signal.rule}", style="yellow")
+
+
+def _list_keys(known: Sequence[str], *, as_json: bool) -> None:
+    if as_json:
+        typer.echo(as_plain(known))
+    else:
+        typer.echo("\n".join(known) or "no figures: no run of this store has any yet")
 
 
 def _too_few(key: str, known: Sequence[str], count: int) -> str:

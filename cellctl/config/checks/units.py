@@ -21,6 +21,8 @@ _LEAST_OFFSET_MM = 1.0
 _LEAST_COM_MM = 5.0
 """The middle of what hangs on a flange or a sensor is farther from it than this."""
 _LONGEST_WAIT_S = 100.0
+_MICROSECONDS = 1000.0
+"""Cameras state their exposure in them, and no other wait is so many milliseconds."""
 _RADIANS = "degrees; these look like radians"
 _METRES = "millimetres; these look like metres"
 
@@ -60,7 +62,8 @@ def _number(name: str, value: float) -> str:
         return _METRES
     rate = name.endswith(("mm_s", "deg_s", "m_s"))
     if name.endswith("_s") and not rate and value >= _LONGEST_WAIT_S:
-        return f"seconds, less than {_LONGEST_WAIT_S:g}; this looks like milliseconds"
+        finer = " or microseconds" if value >= _MICROSECONDS else ""
+        return f"seconds, less than {_LONGEST_WAIT_S:g}; this looks like milliseconds{finer}"
     return ""
 
 

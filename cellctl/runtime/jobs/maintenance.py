@@ -9,7 +9,11 @@ from cellctl.errors.calibration import CalibrationNotStored, MeasuredBeyondBound
 from cellctl.errors.records import RecordsError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import RunResult
-from cellctl.records.rejected import REJECTED
+from cellctl.records.procedure_entries import (
+    CALIBRATION_REJECTED,
+    CALIBRATION_STORED,
+    PROCEDURE_ENDED,
+)
 from cellctl.records.replay.procedure_result import STORED, check_figures
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
@@ -89,7 +93,7 @@ class MaintenanceJob(Job):
             "outcome": outcome.value,
             "fault": str(fault or ""),
         }
-        await self._store.do(RunStore.audit, self._who, "procedure ended", ended)
+        await self._store.do(RunStore.audit, self._who, PROCEDURE_ENDED, ended)
         return outcome
 
     @property
@@ -131,7 +135,7 @@ class MaintenanceJob(Job):
         detail = {"item": stored.kind, "id": stored.id, "serial_number": stored.serial_number}
         if self.run_number:
             await RunRecorder(self._store, self.run_number).document(STORED, detail)
-        await self._store.do(RunStore.audit, self._who, "calibration stored", detail)
+        await self._store.do(RunStore.audit, self._who, CALIBRATION_STORED, detail)
         _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
 
     async def _keep_figures(self, outcome: ProcedureOutcome) -> None:
@@ -152,7 +156,7 @@ class MaintenanceJob(Job):
         """The store keeps no such result; its audit log says that there was one, and why."""
         detail = {"item": outcome.kind.name, "run": self.run_number, "reason": why}
         try:
-            await self._store.do(RunStore.audit, self._who, REJECTED, detail)
+            await self._store.do(RunStore.audit, self._who, CALIBRATION_REJECTED, detail)
         except RecordsError as error:
             # A disk that refuses it must not hide the verdict.
             _log.error("rejection not kept", run=self.run_number, fault=str(error))

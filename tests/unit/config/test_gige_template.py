@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from cellctl.config import problems
 from drivers.camera.gige.config import GigeHeadConfig
 
 CONFIG = Path(__file__).parents[3] / "config"
@@ -70,3 +71,12 @@ def test_checking_it_does_not_load_the_library_of_the_cameras(tmp_path: Path) ->
         [sys.executable, "-c", program], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout.strip()) == (0, "[]"), done.stderr
+
+
+def test_an_exposure_in_microseconds_is_one_error(tmp_path: Path) -> None:
+    path = tmp_path / "cell.toml"
+    path.write_text(TEMPLATE.read_text().replace("exposure_s = 0.008", "exposure_s = 8000", 1))
+    (tmp_path / "features").symlink_to(CONFIG / "features")
+    (found,) = problems(path)
+    assert found.key.endswith("head_1.settings.exposure_s")
+    assert "milliseconds or microseconds" in found.allowed

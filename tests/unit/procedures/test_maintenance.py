@@ -15,7 +15,7 @@ from cellctl.errors.calibration import (
 from cellctl.errors.records import RecordNotWritten
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, STEREO_HEAD_1, STOP_LATENCY
 from cellctl.records.entries import RunResult, Verdict
-from cellctl.records.rejected import REJECTED
+from cellctl.records.procedure_entries import CALIBRATION_REJECTED
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
@@ -96,7 +96,7 @@ async def test_a_bad_result_is_put_aside_with_its_reason(
     assert json.loads(aside.read_text())["checks"] == CHECKS
     assert await job.close(RunResult.ABORTED, ResultOutOfLimits("head_1")) is RunResult.ABORTED
     (who, what, told), (_, _, ended) = await rig.audit()
-    assert (who, what, told["item"], told["run"]) == ("line", REJECTED, "head_1", 0)
+    assert (who, what, told["item"], told["run"]) == ("line", CALIBRATION_REJECTED, "head_1", 0)
     assert told["reason"] == f"rms 0.31, limit 0.2 px; kept in {aside.parent}"
     assert "F614" in ended["fault"]
 

@@ -7,6 +7,7 @@ from typing import Any
 from cellctl.records.entered.notes import NOTE, note_words
 from cellctl.records.entered.said_by import BY, GAUGE, measured_by, said_by
 from cellctl.records.entries import Alarm, AuditEntry, RunRecord
+from cellctl.records.procedure_entries import MADE_BY_PROCEDURES
 from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
 from cellctl.records.report.text import MISSING, duration, facts, fixed, when
 
@@ -64,7 +65,8 @@ def _events(
     head = record.head
     for entry in audit:
         if entry.action not in _OWN_LINE:
-            yield entry.time, f"command {entry.action}{_details(entry.detail)}", said_by(entry)
+            command = "" if entry.action in MADE_BY_PROCEDURES else "command "
+            yield entry.time, f"{command}{entry.action}{_details(entry.detail)}", said_by(entry)
     yield head.started, "record opened", _CELL
     for phase in record.phases:
         lasted = duration(phase.began, phase.ended)

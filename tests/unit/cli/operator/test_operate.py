@@ -256,6 +256,21 @@ def test_a_reset_that_ends_in_aborted_failed(daemon: Agreeable) -> None:
     assert "ABORTED: F202 lost" in str(done.exception)
 
 
+@pytest.mark.parametrize("newest", ["stop", "reset"])
+def test_whose_command_led_elsewhere_is_said(
+    daemon: Agreeable, tmp_path: Path, newest: str
+) -> None:
+    with contextlib.closing(RunStore(tmp_path / "store")) as store:
+        store.audit("terminal:bo", "stop")
+        store.audit("terminal:ann", newest)
+    daemon.leads_to["reset"] = "STOPPED"
+    daemon.shows["data_dir"] = str(tmp_path / "store")
+    done = cellctl("reset")
+    assert fault_of(done) is CommandMissedItsGoal
+    said = "STOPPED by the command stop of terminal:ann, " in str(done.exception)
+    assert said is (newest == "stop")
+
+
 @pytest.mark.parametrize("arguments", [["start", "--serial", "S"], ["procedure", "101"]])
 def test_only_a_good_end_is_a_success(daemon: Agreeable, arguments: list[str]) -> None:
     daemon.shows["result"] = "bad"

@@ -13,7 +13,7 @@ from cellctl.calibration.store.envelope import read_stored
 from cellctl.cli.records.calibrations import app
 from cellctl.clock import utc_now
 from cellctl.records import RunStore
-from cellctl.records.rejected import REJECTED
+from cellctl.records.procedure_entries import CALIBRATION_REJECTED
 
 SHIPPED = Path(__file__).parents[4] / "config" / "demo-calibration"
 RUNNER = CliRunner(env={"COLUMNS": "200", "NO_COLOR": "1"})
@@ -84,13 +84,14 @@ def test_what_is_not_there_is_said(store: RunStore) -> None:
     done = asked("show", "head_9", "--data-dir", folder)
     assert done.exit_code == 1
     assert "head_9" in done.stderr
+    assert "`cellctl status` lists them" in done.stderr
 
 
 def test_a_rejected_result_is_told_until_one_of_its_kind_passes(
     store: RunStore, folder: str
 ) -> None:
     detail = {"item": "base_frame", "run": 7, "reason": "rms [x] 0.31, limit 0.2 px; kept in away"}
-    store.audit("line", REJECTED, detail)
+    store.audit("line", CALIBRATION_REJECTED, detail)
     for words in (("list",), ("show", "base_frame")):
         done = asked(*words, "--data-dir", folder)
         assert done.exit_code == 0, done.output

@@ -76,3 +76,10 @@ def test_an_unknown_figure_is_answered_with_the_nearest(store: RunStore) -> None
     assert done.exit_code == 1
     assert f"no run has a figure 'seat.gaps'; did you mean '{KEY}'? " in done.output
     assert "1 runs have the figure" in asked(store, KEY).output
+
+
+def test_keys_are_there_for_programs_and_none_is_said(store: RunStore) -> None:
+    assert "no run of this store has any yet" in asked(store).stdout
+    assert json.loads(asked(store, "--json").stdout) == []
+    made(store, 0.01)
+    assert KEY in json.loads(asked(store, "--json").stdout)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from cellctl.records import RunResult, RunStore
+from cellctl.records.procedure_entries import MADE_BY_PROCEDURES
 from cellctl.records.report.export import export_run
 from tests.unit.records.conftest import start
 from tests.unit.records.page import text_of
@@ -25,3 +26,16 @@ def test_alarms_of_the_cell_stand_in_the_timeline_of_their_time(
     assert "alarm F814 acknowledged anna" in page
     assert "acknowledged before" not in page
     assert "F501 later" not in page
+
+
+def test_only_what_somebody_commanded_is_called_a_command(store: RunStore, tmp_path: Path) -> None:
+    run = start(store)
+    store.audit("line", "hold")
+    for made in sorted(MADE_BY_PROCEDURES):
+        store.audit("line", made, {"item": "head_1"})
+    store.close_run(run, RunResult.ABORTED)
+    page = " ".join(text_of(export_run(store, run, tmp_path)).split())
+    assert "command hold" in page
+    for made in MADE_BY_PROCEDURES:
+        assert made in page
+        assert f"command {made}" not in page
