@@ -15,6 +15,9 @@ from types import FrameType, TracebackType
 from typing import Any, Self
 
 START_TIMEOUT_S = 60.0
+_CROWDED = 2.0
+"""Programs for each processor from which on a late start is no surprise; with a processor of its
+own the daemon starts in two seconds."""
 STOP_TIMEOUT_S = 30.0
 """The daemon stops robots that may be moving, and closes its run."""
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -76,13 +79,24 @@ class Child:
             try:
                 message = self.next_line(timeout_s)
             except Empty:
-                raise ChildFailed(f"{self.name} is not ready after {timeout_s:.0f} s") from None
+                raise ChildFailed(self._late(timeout_s, os.getloadavg()[0])) from None
             if message is None:
                 raise ChildFailed(f"{self.name} did not start:\n{self.last_words()}")
             if message.get("ready"):
                 return message
             if "error" in message:
                 raise ChildFailed(f"{self.name} did not start: {message['error']}")
+
+    def _late(self, timeout_s: float, load: float) -> str:
+        """Why a child is not ready, as far as this computer tells."""
+        there = os.cpu_count() or 1
+        text = f"{self.name} is not ready after {timeout_s:.0f} s; its log is {self.log}"
+        if load < _CROWDED * there:
+            return text
+        return (
+            f"{text}\nthis computer was too slow: in the last minute {load:.0f} programs on "
+            f"average wanted its {there} processors. End other programs, and run it again"
+        )
 
     def last_words(self, lines: int = 12) -> str:
         """The end of the child's log that was meant for people, else of all of it."""

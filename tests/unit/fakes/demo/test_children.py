@@ -1,10 +1,11 @@
 """The programs of a demonstration."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-from fakes.demo.children import Child
+from fakes.demo.children import Child, ChildFailed
 
 
 def test_their_modules_are_not_those_of_the_folder_in_which_one_stands(
@@ -15,3 +16,18 @@ def test_their_modules_are_not_those_of_the_folder_in_which_one_stands(
     monkeypatch.chdir(tmp_path)
     child = Child.start("version", ["-c", "import cellctl.version"], tmp_path / "log")
     assert child.process.wait(60) == 0, child.log.read_text()
+
+
+@pytest.mark.parametrize(("load", "crowded"), [(0.5, False), (1000.0, True)])
+def test_a_late_start_names_its_log_and_a_computer_that_is_too_busy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, load: float, crowded: bool
+) -> None:
+    monkeypatch.setattr(os, "getloadavg", lambda: (load, load, load))
+    child = Child.start("late", ["-c", "import time; time.sleep(60)"], tmp_path / "log")
+    try:
+        with pytest.raises(ChildFailed, match=r"late is not ready after 0 s; its log is ") as late:
+            child.wait_ready(0.01)
+    finally:
+        child.process.kill()
+        child.process.wait()
+    assert ("this computer was too slow: " in str(late.value)) is crowded
