@@ -31,6 +31,7 @@ def test_the_folder_is_complete(written: Path) -> None:
     assert files >= FOLDER
 
 
+@pytest.mark.figures  # the next one runs the same contract, by the commands of the page
 def test_the_contract_holds(written: Path, installed: Path) -> None:
     done = contract_of(written, installed)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -11,6 +11,7 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.runtime.progress import Progress
+from tests.rigs.sweeps import sweep
 from tests.unit.daemon_rig import DaemonRig
 
 BEFORE_CONTACT, MATE, VERIFY = (10, 20, 30, 40), 50, 60
@@ -42,7 +43,7 @@ async def at_rest(rig: DaemonRig) -> None:
     assert len(rig.bench.cell.main.moves) == moves
 
 
-@pytest.mark.parametrize("step", BEFORE_CONTACT)
+@pytest.mark.parametrize("step", sweep(BEFORE_CONTACT, BEFORE_CONTACT[:1]))
 async def test_before_the_contact_it_holds(rig: DaemonRig, step: int) -> None:
     lose_line_at(rig, step)
     await rig.started()
