@@ -1,6 +1,7 @@
 """Curves whose forces lie about the way, whatever their pushes and their columns."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -12,16 +13,25 @@ from cellctl.processes.peg_in_hole.offline.judge import judge_curve
 from cellctl.processes.peg_in_hole.offline.task_file import TaskOfCurve, parse_part
 from cellctl.processes.peg_in_hole.verdict.judgement import PegVerdict
 from tests.rigs.insertion.curves import NAMES, TASK, Inserted, as_csv, inserted
+from tests.rigs.sweeps import sweep
 
 PART = parse_part(TASK)
 PUSHED = Inserted(comes_back=True)
 _FZ = NAMES.index("fz_n")
 
 
-@pytest.mark.parametrize("named", [True, False])
-@pytest.mark.parametrize("push_n", [6.5, 10.0, 20.0])
-@pytest.mark.parametrize("play_mm", [0.1, 2.0])
-@pytest.mark.parametrize("turned", [("fx_n",), ("fy_n",), ("fx_n", "fy_n")])
+SIDES = (("fx_n",), ("fy_n",), ("fx_n", "fy_n"))
+QUICK = (
+    (True, 6.5, 0.1, SIDES[0]),
+    (False, 20.0, 2.0, SIDES[1]),
+    (True, 10.0, 0.1, SIDES[2]),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("named", "push_n", "play_mm", "turned"),
+    sweep(product((True, False), (6.5, 10.0, 20.0), (0.1, 2.0), SIDES), QUICK),
+)
 def test_a_side_force_of_the_other_sign_is_refused_however_hard_the_push(
     named: bool, push_n: float, play_mm: float, turned: tuple[str, ...]
 ) -> None:

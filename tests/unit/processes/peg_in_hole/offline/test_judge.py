@@ -3,6 +3,7 @@
 import io
 import json
 from dataclasses import replace
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from cellctl.processes.peg_in_hole.offline.judge import judge_by_task, judge_cur
 from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart, parse_part
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegVerdict
 from tests.rigs.insertion.curves import NAMES, TASK, Inserted, as_csv, inserted
+from tests.rigs.sweeps import sweep
 
 GOOD = Inserted()
 KEYED = replace(GOOD, turn_n_m=(0.6, -0.6), pull_n=9.0)
@@ -63,8 +65,10 @@ CELLS = (
 )
 
 
-@pytest.mark.parametrize("named", [True, False])
-@pytest.mark.parametrize("made", CELLS)
+@pytest.mark.parametrize(
+    ("made", "named"),
+    sweep(product(CELLS, (True, False)), ((CELLS[0], True), (CELLS[0], False), (CELLS[-1], True))),
+)
 def test_an_inserted_peg_is_inserted_in_every_cell(made: Inserted, named: bool) -> None:
     judgement = judged(made, named=named)
     assert judgement.verdict is PegVerdict.INSERTED, [str(check) for check in judgement.checks]
@@ -83,7 +87,7 @@ BAD = (
 )
 
 
-@pytest.mark.parametrize("named", [True, False])
+@pytest.mark.parametrize("named", sweep((True, False), (True,)))
 @pytest.mark.parametrize(("made", "fault"), BAD)
 def test_what_is_not_inserted_is_named(made: Inserted, fault: int, named: bool) -> None:
     judgement = judged(made, named=named)

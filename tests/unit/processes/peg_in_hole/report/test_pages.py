@@ -10,10 +10,13 @@ from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.report.pages import pages
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.sections import Drawing
+from tests.rigs.sweeps import sweep
 from tests.unit.processes.peg_in_hole.record.test_tick_log import ticked
 
 
-@pytest.mark.parametrize("task", [None, {}, {"fit": {"bore": 1.0}}, {"version": 99}])
+@pytest.mark.parametrize(
+    "task", sweep((None, {}, {"fit": {"bore": 1.0}}, {"version": 99}), ({"fit": {"bore": 1.0}},))
+)
 def test_forces_are_drawn_whatever_the_record_says_of_the_task(task: dict[str, Any] | None) -> None:
     made = pages(recorded(task or {}), lambda _artefact: ticked(20).text().encode())
     (section,) = made.sections

@@ -40,7 +40,9 @@ def searching(
         (SearchName.SPIRAL, plug(), 10),
         (SearchName.SPIRAL, pin(chamfer_mm=0.5), 10),
         (SearchName.TILTED_VALLEY, pin(), 9),
-        (SearchName.TILTED_VALLEY, pin(stiffness_n_m=1e5), 9),
+        pytest.param(
+            SearchName.TILTED_VALLEY, pin(stiffness_n_m=1e5), 9, marks=pytest.mark.figures
+        ),
         pytest.param(SearchName.PARTICLE_MAP, pin(stiffness_n_m=1e5), 8, marks=pytest.mark.long),
         (SearchName.ARC, plug(0.05, chamfer_mm=0), 8),
         (SearchName.PATENT_CIRCUMCENTRE, plug(), 9),
