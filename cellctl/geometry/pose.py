@@ -48,6 +48,31 @@ def pose_to_xyzabc(pose: RigidTransform) -> Array:
     return np.array([x_m / MM, y_m / MM, z_m / MM, *turn]) + 0.0
 
 
+def turn_matrix(turn_rad: Array) -> Array:
+    """Rotation matrix, shape (3, 3), of a rotation vector, shape (3,): the formula of Rodrigues.
+
+    For what every tick of a stream asks: SciPy's rotations do the same and take several times as
+    long, because they also take stacks and arrays of other libraries.
+    """
+    x, y, z = turn_rad.tolist()
+    square = x * x + y * y + z * z
+    # Near zero both quotients are the series of sine and cosine, of which the next terms are below
+    # the last digit.
+    if square < 1e-6:
+        along, across = 1.0 - square / 6.0, 0.5 - square / 24.0
+    else:
+        angle = math.sqrt(square)
+        along, across = math.sin(angle) / angle, (1.0 - math.cos(angle)) / square
+    xy, xz, yz = across * x * y, across * x * z, across * y * z
+    return np.array(
+        [
+            [1.0 - across * (y * y + z * z), xy - along * z, xz + along * y],
+            [xy + along * z, 1.0 - across * (x * x + z * z), yz - along * x],
+            [xz - along * y, yz + along * x, 1.0 - across * (x * x + y * y)],
+        ]
+    )
+
+
 def pose_error(expected: RigidTransform, measured: RigidTransform) -> tuple[Array, Array]:
     """Translation (m) and rotation vector (rad) from ``expected`` to ``measured``.
 

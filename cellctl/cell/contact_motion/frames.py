@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.geometry.pose import Array
+from cellctl.geometry.pose import Array, turn_matrix
 
 
 class ContactFrames:
@@ -50,7 +50,7 @@ class ContactFrames:
         return np.ravel(tip_wrench.reshape(2, 3) @ self._task_R_tip(tip).T)
 
     def _task_R_tip(self, tip: Array) -> Array:
-        return np.asarray(Rotation.from_rotvec(tip[3:]).as_matrix() @ self._task_R_nominal)
+        return turn_matrix(tip[3:]) @ self._task_R_nominal
 
 
 def displaced(nominal: Array, displacement: Array) -> Array:

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
 
-from cellctl.geometry.pose import pose_error, pose_from_xyzabc, pose_to_xyzabc
+from cellctl.geometry.pose import pose_error, pose_from_xyzabc, pose_to_xyzabc, turn_matrix
 from cellctl.geometry.uncertain import UncertainPose, skew
 
 mm = st.floats(-5000, 5000)
@@ -20,6 +20,15 @@ def test_written_form_round_trips(
 ) -> None:
     written = [x, y, z, a, b, c]
     assert pose_to_xyzabc(pose_from_xyzabc(written)) == pytest.approx(written, abs=1e-6)
+
+
+@given(st.tuples(*[st.floats(-4.0, 4.0)] * 3), st.sampled_from([1.0, 1e-2, 1e-3, 1e-6, 0.0]))
+def test_the_matrix_of_a_turn_is_that_of_scipy(
+    turn: tuple[float, float, float], size: float
+) -> None:
+    turn_rad = size * np.array(turn)
+    expected = Rotation.from_rotvec(turn_rad).as_matrix()
+    np.testing.assert_allclose(turn_matrix(turn_rad), expected, rtol=0, atol=5e-15)
 
 
 def test_a_zero_is_written_without_a_sign() -> None:

@@ -15,6 +15,7 @@ from cellctl.cell.contact_motion.settings import ContactSettings
 from cellctl.cell.contact_motion.streamed_contact import StreamedContact
 from cellctl.cell.contact_motion.ticks import ContactTick, TickObserver
 from cellctl.force.contact.streamed.gains import LoopFigures
+from cellctl.geometry.pose import turn_matrix
 from cellctl.guard.report import GuardSamples, GuardTrip, TareResult, TripReason
 from cellctl.interfaces.streaming_robot import PoseStream, StreamLimits, StreamReport
 from tests.unit.cell.guard import TinyGuard
@@ -144,7 +145,7 @@ class WorldGuard(TinyGuard):
         # Rows times a matrix: the inverse rotation.
         felt = wrench.reshape(2, 3)
         if self._world.tip[3:].any():
-            felt = felt @ Rotation.from_rotvec(self._world.tip[3:]).as_matrix()
+            felt = felt @ turn_matrix(self._world.tip[3:])
         self._times.append(time_s)
         self._wrenches.append(
             np.ravel(felt @ _TASK_R_NOMINAL) + self._rng.normal(0.0, 1.0, 6) * self._sigma
