@@ -141,8 +141,9 @@ put_help() {
     _CELLCTL_COMPLETE=source_bash "$program" >"$share/bash-completion/completions/cellctl"
     _CELLCTL_COMPLETE=source_zsh "$program" >"$share/zsh/vendor-completions/_cellctl"
     _CELLCTL_COMPLETE=source_fish "$program" >"$share/fish/vendor_completions.d/cellctl.fish"
-    for name in cellctl cellctl-hmi; do
-        ln -sfn "$INTO$PREFIX/current/.venv/bin/$name" "$INTO/usr/local/bin/$name"
+    # All variables of this script are shared, and `name` is that of the release.
+    for command in cellctl cellctl-hmi; do
+        ln -sfn "$INTO$PREFIX/current/.venv/bin/$command" "$INTO/usr/local/bin/$command"
     done
 }
 
@@ -175,7 +176,8 @@ install_release() {
     put_files "$release"
     put_help "$release"
     before=$(readlink "$INTO$PREFIX/current" || true)
-    if [ -n "$before" ] && [ "$before" != "releases/$name" ]; then
+    # A link that leads nowhere is nothing to go back to.
+    if [ -n "$before" ] && [ "$before" != "releases/$name" ] && [ -d "$INTO$PREFIX/$before" ]; then
         point "$INTO$PREFIX/previous" "$before"
     fi
     point "$INTO$PREFIX/current" "releases/$name"

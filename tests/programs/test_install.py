@@ -80,6 +80,36 @@ def test_one_command_goes_back_and_another_forth(upgraded: Path) -> None:
         assert (upgraded / "usr/local/bin" / program).exists()
 
 
+def test_an_installation_ends_at_the_release_that_it_has_made(
+    upgraded: Path, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    """With its packages there already, for these take minutes."""
+    source = tmp_path_factory.mktemp("source")
+    for part in ("systemd", "config", "pyproject.toml"):
+        (source / part).symlink_to(ROOT / part)
+    (source / "RELEASE").write_text("newest\n")
+    releases = upgraded / "opt/cellctl/releases"
+    (releases / "new").rename(releases / f"{__version__}-newest")
+    (releases / f"{__version__}-newest/.complete").touch()
+    point = upgraded / "opt/cellctl/current"
+    (upgraded / "opt/cellctl/previous").unlink()
+    for before in ("releases/old", "releases/of-nobody"):
+        point.unlink()
+        point.symlink_to(before)
+        done = subprocess.run(
+            ["sh", source / "systemd/install.sh", "install"],
+            check=False,
+            capture_output=True,
+            text=True,
+            env=os.environ | {"INTO": str(upgraded), "PYTHON": sys.executable},
+        )
+        assert done.returncode == 0, done.stderr
+        assert f"installed {__version__}-newest. Next:" in done.stdout
+        assert current(upgraded) == f"releases/{__version__}-newest"
+        assert os.readlink(upgraded / "opt/cellctl/previous") == "releases/old"
+    assert (upgraded / "usr/local/bin/cellctl").resolve().exists()
+
+
 def test_a_store_that_the_older_release_cannot_read_is_not_left_to_it(upgraded: Path) -> None:
     store = upgraded / STORE
     write_store(store, SCHEMA_VERSION + 1)
