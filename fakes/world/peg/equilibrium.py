@@ -28,6 +28,9 @@ _ROUNDS_CREEPING: Final = 4
 _RELAX_EVERY: Final = 10
 """A peg that creeps gets few rounds, and the slow slide only now and then: with all of them a
 second of creeping takes several seconds, and the fake cell falls silent for its clients."""
+_BACKWARDS: Final = 0.3
+"""A step of Newton's is cut back where what drives the peg points back along it by more than this
+share. Friction that turns round within a step would have the peg jump to and fro else."""
 _FOUND_M: Final = 2e-8
 _FOUND_RAD: Final = 2e-6
 """Newton's last step. Within it forces are linear, and are carried along with it."""
@@ -71,34 +74,69 @@ def settle(
     slots: Slots, robot_n_m: Array, commanded: Pose6, last: Equilibrium, dt_s: float
 ) -> Equilibrium:
     """One step of time. ``robot_n_m`` is the 6x6 stiffness of everything that holds the peg."""
-    before, bristles = last.pose, last.bristles
-    drag = _DRAG / dt_s
-    held = robot_n_m + np.diag(drag)
-    wanted = robot_n_m @ commanded + drag * before
-    pose = _moved(before, last.way)  # a steady motion goes on
+    step = _Step(slots, robot_n_m, commanded, last, dt_s)
+    start = _moved(last.pose, last.way)  # a steady motion goes on
     rounds, relaxing = _effort(last.crept)
-    for number in range(rounds + relaxing):
-        load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
-        residual = wanted - held @ pose + load.wrench
-        jacobian = load.jacobian()
-        system = held + jacobian
-        if number >= rounds:
-            system += _RELAXED
-        step = _solved(system, residual)
-        way = step.tolist()
-        pose = _moved(pose, way)
-        if max(map(abs, way[:3])) < _FOUND_M and max(map(abs, way[3:])) < _FOUND_RAD:
-            load.wrench -= jacobian @ step
-            return load.standing(pose)
-    crept = tuple(
-        old + max(-limit, min(limit, new - old))
-        for old, new, limit in zip(before, pose, _CREEP, strict=True)
-    )
-    pose = (crept[0], crept[1], crept[2], crept[3], crept[4], crept[5])
-    load = _Load(slots.fit, slots.active(pose), pose, before, bristles)
-    # What the arm presses with is all that can be carried.
-    load.wrench = -(robot_n_m @ (np.array(commanded) - pose))
-    return load.standing(pose, crept=last.crept + 1)
+    found, pose = step.search(start, rounds, cuts=True)
+    if found is None:
+        # Where a peg falls over an edge, whole steps may still find where it comes to stand.
+        found, pose = step.search(start, rounds, relaxing)
+    return found or step.crept(pose)
+
+
+class _Step:
+    """What is the same for all poses that are tried in one step of time."""
+
+    def __init__(
+        self, slots: Slots, robot_n_m: Array, commanded: Pose6, last: Equilibrium, dt_s: float
+    ) -> None:
+        drag = _DRAG / dt_s
+        self._slots, self._robot_n_m, self._commanded, self._last = (
+            slots, robot_n_m, commanded, last,
+        )  # fmt: skip
+        self._held = robot_n_m + np.diag(drag)
+        self._wanted = robot_n_m @ commanded + drag * last.pose
+
+    def search(
+        self, pose: Pose6, rounds: int, relaxing: int = 0, *, cuts: bool = False
+    ) -> tuple[Equilibrium | None, Pose6]:
+        """Newton's method from a pose, then the slow slide; where nothing is found, its last."""
+        load, residual = self._at(pose)
+        for number in range(rounds + relaxing):
+            jacobian = load.jacobian()
+            system = self._held + jacobian
+            if number >= rounds:
+                system += _RELAXED
+            step = _solved(system, residual.copy())
+            way = step.tolist()
+            pose = _moved(pose, way)
+            if max(map(abs, way[:3])) < _FOUND_M and max(map(abs, way[3:])) < _FOUND_RAD:
+                load.wrench -= jacobian @ step
+                return load.standing(pose), pose
+            driven = float(residual @ step)
+            load, residual = self._at(pose)
+            if cuts and (beyond := _beyond(float(residual @ step), driven)):
+                pose = _moved(pose, (-beyond * step).tolist())
+                load, residual = self._at(pose)
+        return None, pose
+
+    def crept(self, pose: Pose6) -> Equilibrium:
+        """The peg a little on its way to a pose that is none of equilibrium."""
+        crept = tuple(
+            old + max(-limit, min(limit, new - old))
+            for old, new, limit in zip(self._last.pose, pose, _CREEP, strict=True)
+        )
+        pose = (crept[0], crept[1], crept[2], crept[3], crept[4], crept[5])
+        load, _ = self._at(pose)
+        # What the arm presses with is all that can be carried.
+        load.wrench = -(self._robot_n_m @ (np.array(self._commanded) - pose))
+        return load.standing(pose, crept=self._last.crept + 1)
+
+    def _at(self, pose: Pose6) -> tuple["_Load", Array]:
+        """The contacts at a pose, and what drives the peg on from it."""
+        last = self._last
+        load = _Load(self._slots.fit, self._slots.active(pose), pose, last.pose, last.bristles)
+        return load, self._wanted - self._held @ pose + load.wrench
 
 
 def _solved(system: Array, residual: Array) -> Array:
@@ -107,6 +145,14 @@ def _solved(system: Array, residual: Array) -> Array:
     if singular:
         raise np.linalg.LinAlgError("stiffness of arm and contacts is singular")
     return np.asarray(step)
+
+
+def _beyond(drives: float, driven: float) -> float:
+    """Share of a step to go back, to where what drives along it would vanish if it were linear.
+
+    ``drives`` is the product of step and residual at its end, ``driven`` that at its begin.
+    """
+    return drives / (drives - driven) if drives < -_BACKWARDS * driven < 0.0 else 0.0
 
 
 def _effort(crept: int) -> tuple[int, int]:
