@@ -1,7 +1,8 @@
 """Pegs that are not inserted, in the contact model: fed, pushed and judged as in a run (R4).
 
-Search and face are left out: frame A lies on the true face, and the peg stands over the hole, or
-where its state wants it. The cell believes its grip force, also where the part slips with less.
+Search and face are left out: frame A lies where touches of the true face would put it, and the peg
+stands over the hole, or where its state wants it. The cell believes its grip force, also where the
+part slips with less.
 """
 
 import asyncio
@@ -59,6 +60,9 @@ class TrapState(StrEnum):
     ZERO_JUMPS_AT_SEAT = "zero of the sensor jumps in the rise at the seat"
 
 
+_DEAD_SENSOR = frozenset({TrapState.FROZEN, TrapState.STUCK})
+
+
 @dataclass(frozen=True, slots=True)
 class ContactTrap:
     """What came of one."""
@@ -75,7 +79,8 @@ class ContactTrap:
     force_n: float
     """Greatest true force over 20 ms."""
     limit_n: float
-    """What it may be: the limit of the insertion."""
+    """What it may be: the limit of the insertion; with a sensor that is dead, which nobody can
+    measure by, that of the fault."""
     curve: str
     """Ticks, as the record of a run has them."""
 
@@ -147,7 +152,7 @@ async def _run(cell: CycleCell, state: TrapState, seed: int) -> ContactTrap:
         world.seated,
         by_curve,
         round(world.peaks.force_n[_WINDOW_MS], 2),
-        task.limits.insertion_n,
+        task.limits.fault_n if state in _DEAD_SENSOR else task.limits.insertion_n,
         log.text(),
     )
 
@@ -166,12 +171,17 @@ def _placed(
     scenario = cell.scenario
     part = draw_part(scenario, seed, 1)
     flange_T_tip = pose_from_xyzabc(cell.recipe.flange_T_tip)
-    base_T_task = part.cell_T_hole * _OVER * RigidTransform.from_translation([0, 0, made.z0_m])
     azimuth = float(rng.uniform(0, 2 * np.pi))
     x_m, y_m = made.aside_m * np.cos(azimuth), made.aside_m * np.sin(azimuth)
     # Where the true tip is to stand; the part sits in the fingers as it was drawn.
     height = RigidTransform.from_translation([x_m, y_m, _BEGIN_M])
     base_T_flange = _upright(part, flange_T_tip, height)
+    # Touches of the face meet it with the true tip, and so does frame A: how deep the part sits in
+    # the fingers has gone into it.
+    base_T_face = part.cell_T_hole * _OVER
+    tip, true_tip = (base_T_flange * one for one in (flange_T_tip, part.flange_T_peg))
+    grip_m = base_T_face.rotation.inv().apply(tip.translation - true_tip.translation)[2]
+    base_T_task = base_T_face * RigidTransform.from_translation([0, 0, grip_m + made.z0_m])
     world = ContactWorld(
         scenario,
         part,

@@ -84,7 +84,12 @@ class ContactMotions(ABC):
 
     @abstractmethod
     async def touch(
-        self, direction: Vector, travel_m: float, force_n: float, speed_m_s: float | None = None
+        self,
+        direction: Vector,
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
         """Go along a unit vector until the force against it exceeds ``force_n``.
 
@@ -139,11 +144,16 @@ class ContactMotions(ABC):
 
     @abstractmethod
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
         """Go into the hole to a depth below the face, giving way sideways and in attitude.
 
-        The feed slows with the axial force and backs off above 60 % of the limit.
+        The feed slows with the axial force and backs off above 60 % of the limit. ``past_m``: it
+        goes on past the depth by so much, slowly as long as nothing is felt.
         """
 
     @abstractmethod

@@ -14,6 +14,7 @@ from cellctl.force.contact.streamed.gains import (
     levers,
 )
 from cellctl.force.contact.streamed.speeds import touch_speed_m_s
+from cellctl.geometry.pose import Array
 
 _Z = 2
 
@@ -61,9 +62,11 @@ class ContactSettings:
     """See ``TickRules``."""
 
     @property
-    def tilt_spring_n_m_rad(self) -> float:
-        """The spring at the rim as one of the attitude: a wide plug would tilt at its seat else."""
-        return self.rim_spring_n_m * self.lever_m**2
+    def springs(self) -> Array:
+        """K of each axis while the peg is fed, N/m and N·m/rad, shape (6,); 0 along and about z."""
+        # Of the attitude by the lever at the rim: a wide plug would tilt at its seat else.
+        lateral, tilt = self.lateral_spring_n_m, self.rim_spring_n_m * self.lever_m**2
+        return np.array([lateral, lateral, 0.0, tilt, tilt, 0.0])
 
     def check(self) -> None:
         """Raise ``LoopTooSlow`` or ``LoopUnstable`` before any contact."""

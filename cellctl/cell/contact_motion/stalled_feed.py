@@ -14,10 +14,13 @@ _LAST_M = 0.5e-3
 4.4)."""
 _TOUCH_SHARE = 0.8
 """Speed over that stretch, as a share of the feed: a touch may grow by 8 N, a feed by 10 N."""
+_UNFELT_SHARE = 0.2
+"""The same past the seat where nothing is felt of it. A sensor that is dead shows that, too, and
+all that the arm goes on until it is stopped is force then."""
 
 
 class StalledFeed:
-    """One feed. Section 4.4 of the study of insertion by touch."""
+    """One feed to a seat at ``depth_m``. Section 4.4 of the study of insertion by touch."""
 
     def __init__(
         self, figures: LoopFigures, limit_n: float, depth_m: float, period_s: float
@@ -37,9 +40,11 @@ class StalledFeed:
 
     def speed_m_s(self, sample: ContactSample) -> float:
         """Speed of the next tick; negative to back off."""
-        near = self._depth_m - float(sample.task_position_tip_m[2]) < _LAST_M
-        full_m_s = self._full_m_s * (_TOUCH_SHARE if near else 1.0)
-        return full_m_s * feed_override(_axial_n(sample), self._limit_n)
+        override = feed_override(_axial_n(sample), self._limit_n)
+        left_m = self._depth_m - float(sample.task_position_tip_m[2])
+        if left_m < 0.0 and override == 1.0:
+            return self._full_m_s * _UNFELT_SHARE
+        return self._full_m_s * (_TOUCH_SHARE if left_m < _LAST_M else 1.0) * override
 
     def stalled(self, sample: ContactSample) -> Ended | None:
         """``FORCE`` once the feed has stood for a while, or the limit is passed."""

@@ -1,6 +1,5 @@
 """Motions by touch for any robot that follows a stream, with the force guard beside it."""
 
-import asyncio
 from collections.abc import Callable, Coroutine
 from typing import Any
 
@@ -28,10 +27,10 @@ from cellctl.cell.contact_motion.motions import (
     Vector,
 )
 from cellctl.cell.contact_motion.stalled_feed import StalledFeed
+from cellctl.cell.contact_motion.standing import HOLD_S, hold_while
 from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
 from cellctl.cell.contact_motion.ticks import MotionKind
-from cellctl.clock import now_s
-from cellctl.errors.streamed_contact import HeldTooLong, StreamLate
+from cellctl.errors.streamed_contact import StreamLate
 from cellctl.force.contact.streamed.path import PathFollower, straight
 from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
 from cellctl.geometry.pose import MM, Array
@@ -47,8 +46,6 @@ of the stiffness and the noise."""
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
 """A motion is given up after three times the time of its way at full speed, and 10 s. It ends only
 what hangs: a late tick halves the speed, and a way of nothing still needs time to come to rest."""
-_HOLD_S = 30.0
-"""Longest work beside a standing stream, such as a record on the disk. It ends only what hangs."""
 _IN_CONTACT_N = 2.0
 """A force below this, or below four times the noise, is none on the way out. It decides only
 between the slow and the fast speed."""
@@ -98,7 +95,12 @@ class StreamedContact(ContactMotions):
         return moved
 
     async def touch(
-        self, direction: Vector, travel_m: float, force_n: float, speed_m_s: float | None = None
+        self,
+        direction: Vector,
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
         """See ``ContactMotions``."""
         across = abs(float(direction[2])) < 1e-9  # but for the rounding of a unit vector
@@ -114,7 +116,7 @@ class StreamedContact(ContactMotions):
         def touched(sample: ContactSample) -> Ended | None:
             return Ended.FORCE if -float(sample.force_n @ direction) > force_n else None
 
-        end = first_of(touched, arrived(path))
+        end = first_of(touched, when(until), arrived(path))
         return await self._run(
             MotionKind.TOUCH, path, lambda _sample: speed, end, speed, press=press
         )
@@ -172,7 +174,9 @@ class StreamedContact(ContactMotions):
         press = None
         if held:
             push = np.concatenate([hold_force_n, np.zeros(3)])
-            press = giving_way(self._loop, push, (*held, TILT_X, TILT_Y), spring=self._springs())
+            press = giving_way(
+                self._loop, push, (*held, TILT_X, TILT_Y), spring=self._settings.springs
+            )
         end = first_of(when(until), arrived(path))
         return await self._run(
             MotionKind.TURN, path, lambda _sample: speed, end, speed, press=press
@@ -195,15 +199,21 @@ class StreamedContact(ContactMotions):
         return await self._hold(MotionKind.COMPLY, press, hold_s, until)
 
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
         """See ``ContactMotions``; ends by ``FORCE`` when the force has stopped the feed."""
         self._pressed_n = 0.0
         target = self._loop.tip_command.copy()
-        target[2] = depth_m
+        target[2] = depth_m + past_m
         path = self._path(*straight(self._loop.tip_command, target, _TURN_LEVER_M))
         feed = StalledFeed(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
-        press = giving_way(self._loop, np.zeros(6), (X, Y, TILT_X, TILT_Y), spring=self._springs())
+        press = giving_way(
+            self._loop, np.zeros(6), (X, Y, TILT_X, TILT_Y), spring=self._settings.springs
+        )
         end = first_of(when(until), feed.stalled, arrived(path))
         return await self._run(
             MotionKind.FEED, path, feed.speed_m_s, end, feed.slowest_m_s, press=press
@@ -231,35 +241,13 @@ class StreamedContact(ContactMotions):
             MotionKind.BACK_OUT, path, speed, first_of(held, arrived(path)), slow
         )
 
-    async def hold_while(
-        self, work: Coroutine[Any, Any, None], *, limit_s: float = _HOLD_S
-    ) -> None:
-        """Stand in the stream while something else is done; raises what either of them raises, or
-        ``HeldTooLong`` after ``limit_s``."""
-        self._loop.begin_motion(MotionKind.HOLD)
-        task = asyncio.create_task(work)
-        end_s = now_s() + limit_s
-        try:
-            while not task.done():
-                if now_s() > end_s:
-                    raise HeldTooLong(f"after {limit_s:g} s")
-                await self._loop.send(self._loop.tip_command)
-                # A stream whose ticks are all there already never waits, and the work would not
-                # get its turn.
-                await asyncio.sleep(0)
-            await task
-        finally:
-            task.cancel()
-            await asyncio.gather(task, return_exceptions=True)
+    async def hold_while(self, work: Coroutine[Any, Any, None], *, limit_s: float = HOLD_S) -> None:
+        """See ``standing.hold_while``."""
+        await hold_while(self._loop, work, limit_s)
 
     def _press_along(self, force_n: float, *, contact_must_stay: bool = False) -> Press:
         push = np.array([0.0, 0.0, force_n, 0.0, 0.0, 0.0])
         return giving_way(self._loop, push, (Z,), contact_must_stay=contact_must_stay)
-
-    def _springs(self) -> Array:
-        settings = self._settings
-        lateral, tilt = settings.lateral_spring_n_m, settings.tilt_spring_n_m_rad
-        return np.array([lateral, lateral, 0.0, tilt, tilt, 0.0])
 
     def _path(
         self, points: Array, lengths: Array, acceleration: float | None = None

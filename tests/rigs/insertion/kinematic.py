@@ -69,7 +69,12 @@ class KinematicMotions(ContactMotions):
         return self._ended(Ended.TRAVEL, 0.0)
 
     async def touch(
-        self, direction: Array, travel_m: float, force_n: float, speed_m_s: float | None = None
+        self,
+        direction: Array,
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
         speed = speed_m_s or self._touch_speed
         self.touches += 1
@@ -163,9 +168,13 @@ class KinematicMotions(ContactMotions):
         return self._ended(Ended.TIME, press_n)
 
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
-        rests_m = self._depth_m()
+        rests_m, depth_m = self._depth_m(), depth_m + past_m
         if rests_m > self.task.fit.entry_depth_m:
             self._centre()
         # Against a stop the force rises with the way of the arm.

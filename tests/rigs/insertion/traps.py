@@ -73,7 +73,7 @@ class StandingPeg(KinematicMotions):
         until: Condition | None = None,
     ) -> ContactMotion:
         self.time_s += hold_s
-        return self._answer(Ended.TIME, np.zeros(3))
+        return self._answer(Ended.TIME, np.array([0.0, 0.0, -force_n]))
 
     async def touch(
         self,
@@ -81,13 +81,17 @@ class StandingPeg(KinematicMotions):
         travel_m: float,
         force_n: float,
         speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
         axis, sign = int(np.argmax(np.abs(direction))), float(np.sum(direction))
         wall_m = self._walls[axis, 1 if sign > 0 else 0]
         yields_m = force_n / self.task.cell.stiffness_n_m
         gap_m = (wall_m - self.position_m[axis]) * sign + yields_m
         gap_m += float(self._noise_of.normal(0, _ENCODER_SIGMA_M))
-        met = gap_m <= travel_m and self._state is not PegState.FROZEN
+        if self._state is PegState.FROZEN:
+            # Nothing ends the push, and the arm goes on by its encoders.
+            gap_m = travel_m + _ENCODER_SIGMA_M
+        met = gap_m <= travel_m
         self.position_m = self.position_m + min(gap_m, travel_m) * direction
         if met and self._state is PegState.ON_CHAMFER:
             # The slope lifts a peg that is pushed against it.

@@ -13,6 +13,8 @@ from cellctl.cell.contact_motion.motions import ContactSample
 
 OUT_OF_BAND_N, OUT_OF_BAND_N_M = 3.0, 0.1
 """Band of side force and moment round that of a free peg, before a recipe has measured its own."""
+LEAST_SLOPE = 0.3
+"""Rise of the force at the seat over the stiffness of arm and contact."""
 _STAYS = 0.7
 _FOOT = 0.2
 _LINE_SAMPLES = 20
@@ -92,12 +94,14 @@ def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
     return float(np.polyfit(depth_m[begin:], axial_n[begin:], 1)[0])
 
 
-def unloaded_depth_m(standing: Standing, stiffness_n_m: float, face_yields_m: float) -> float:
+def unloaded_depth_m(
+    depth_m: float, axial_n: float, stiffness_n_m: float, face_yields_m: float
+) -> float:
     """Depth of the tip, which arm and contact have yielded under the force to get beyond.
 
     Frame A lies deeper than the face by ``face_yields_m``, by what the touches of the face yielded.
     """
-    return standing.depth_m - standing.axial_n / stiffness_n_m + face_yields_m
+    return depth_m - axial_n / stiffness_n_m + face_yields_m
 
 
 def greatest_axial_n(samples: Sequence[ContactSample]) -> float:

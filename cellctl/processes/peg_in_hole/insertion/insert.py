@@ -3,7 +3,6 @@
 A retry never raises a limit. Source: sections 4.4, 5.2 and 5.3 of the study of insertion by touch.
 """
 
-from collections import deque
 from dataclasses import dataclass
 
 from cellctl.cell.contact_motion.motions import (
@@ -29,20 +28,18 @@ from cellctl.processes.peg_in_hole.insertion.felt import (
     unloaded_depth_m,
 )
 from cellctl.processes.peg_in_hole.insertion.keyway import find_keyway
+from cellctl.processes.peg_in_hole.insertion.past_seat import SEAT_TOLERANCE_M, PastSeat
 from cellctl.processes.peg_in_hole.insertion.recovery import IN_ORDER, WHEN_STRAIGHT, Recovery
 from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrubbed_way_m
 from cellctl.processes.peg_in_hole.insertion.with_feed import ForceWithFeed, with_feed_n
 from cellctl.processes.peg_in_hole.insertion.zero_jump import ZeroJump, dropped_n
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
-SEAT_TOLERANCE_M = 0.3e-3
 _MOST_RECOVERIES = 3
 _RECOVERY_S = 15.0
 """From the end of the first feed on."""
 _GAIN_M = 0.2e-3
 """Depth that a recovery has to win."""
-_IN_A_ROW = 3
-"""Samples: fewer are the noise of a force."""
 _SAME_DEPTH_M = 0.1e-3
 """Two feeds that end no farther apart than this have met the same thing."""
 
@@ -111,20 +108,17 @@ class _Feed:
         """A little beyond the seat, so that only a force ends it there."""
         limit_n = self._task.limits.insertion_n
         yields_m = limit_n / self._task.cell.stiffness_n_m
-        target_m = self._task.fit.depth_m + yields_m + SEAT_TOLERANCE_M
+        past_m = yields_m + SEAT_TOLERANCE_M
         watched, jump = ForceWithFeed(self._task.cell), ZeroJump(self._task)
-        past_seat: deque[bool] = deque(maxlen=_IN_A_ROW)
+        past_seat = PastSeat(self._task, self._face_yields_m)
         ended_by: list[bool] = []
 
         def wrong(sample: ContactSample) -> bool:
-            # Where nothing is felt beyond the seat, a sensor that is dead would let the arm press
-            # with all that its target lies beyond: a seat that is felt needs that way, no other.
-            past_seat.append(self._past_seat(Standing.of(sample)))
             # Each takes every sample.
-            ended_by[:] = (watched.take(sample), jump.take(sample), sum(past_seat) == _IN_A_ROW)
+            ended_by[:] = (watched.take(sample), jump.take(sample), past_seat.take(sample))
             return any(ended_by)
 
-        motion = await self._motions.feed(target_m, limit_n, wrong)
+        motion = await self._motions.feed(self._task.fit.depth_m, limit_n, wrong, past_m)
         self._samples += motion.samples
         if motion.ended is Ended.CONDITION:
             raise self._fault(Standing.of(motion.last), ended_by, watched, jump)
@@ -141,16 +135,14 @@ class _Feed:
             return ForceDropped(f"by {jump.dropped_n:.1f} N: {standing}")
         return NotSeated(f"nothing has stopped the feed at the seat: {standing}")
 
-    def _past_seat(self, standing: Standing) -> bool:
-        return self._unloaded_m(standing) > self._task.fit.depth_m + SEAT_TOLERANCE_M
-
     def short_of_seat(self, motion: ContactMotion) -> bool:
         """Whether a feed that a force has ended is not at the seat."""
         reached_m = self._unloaded_m(Standing.of(motion.last))
         return reached_m < self._task.fit.depth_m - SEAT_TOLERANCE_M
 
     def _unloaded_m(self, standing: Standing) -> float:
-        return unloaded_depth_m(standing, self._task.cell.stiffness_n_m, self._face_yields_m)
+        stiffness = self._task.cell.stiffness_n_m
+        return unloaded_depth_m(standing.depth_m, standing.axial_n, stiffness, self._face_yields_m)
 
     def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
         """What is known at the end of the last feed."""

@@ -9,7 +9,9 @@ pushes harder helps. Sources: D. E. Whitney, Journal of Dynamic Systems, Measure
 
 import numpy as np
 
+from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.geometry.pose import Array
+from cellctl.processes.peg_in_hole.plan.task import FitGeometry
 
 LEAST_AXIAL_N = 2.0
 """With less than this along the axis the ratios are mostly noise."""
@@ -38,3 +40,14 @@ def jam_ratio(
     both = tilting + friction * (1 + two_points)[:, None] * aside
     by_moment = np.hypot(*both.T) / two_points
     return np.asarray(np.maximum(friction * np.hypot(*aside.T), by_moment))
+
+
+def rubbing_n(sample: ContactSample, fit: FitGeometry, friction: float) -> float:
+    """Force against the feed that two sliding points of the walls make, by side and moment."""
+    bore_m = sample.task_position_tip_m[2] - fit.hole_chamfer_m - fit.peg_chamfer_m
+    # A moment that was not recorded explains nothing.
+    moment_n_m = np.nan_to_num(sample.moment_n_m)[None, :]
+    force_n = sample.force_n[None, :]
+    (ratio,) = jam_ratio(force_n, moment_n_m, np.array([bore_m]), fit.peg_radius_m, friction)
+    share = 0.0 if np.isnan(ratio) else min(float(ratio), 1.0)
+    return share * max(-float(sample.force_n[2]), 0.0)

@@ -10,10 +10,8 @@ all at once. Source: sensor_spike in section 5.2 of the study of insertion by to
 from collections import deque
 from collections.abc import Sequence
 
-import numpy as np
-
 from cellctl.cell.contact_motion.motions import ContactSample
-from cellctl.processes.peg_in_hole.insertion.jam import jam_ratio
+from cellctl.processes.peg_in_hole.insertion.jam import rubbing_n
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 
 _LEAST_N = 3.0
@@ -49,7 +47,9 @@ class ZeroJump:
             self._latest.clear()
         # A tick that found no new force repeats the last one.
         elif not self._latest or axial_n != self._latest[-1][1]:
-            self._latest.append((depth_m, axial_n, self._rubbing_n(sample)))
+            self._latest.append(
+                (depth_m, axial_n, rubbing_n(sample, self._fit, self._cell.friction))
+            )
             if len(self._latest) == _SAMPLES:
                 self.dropped_n = max(self.dropped_n, self._drop_n())
         return self.dropped_n > most_dropped_n(self._cell)
@@ -63,22 +63,6 @@ class ZeroJump:
     ) -> float:
         way_back_m = max(0.0, base[0] - low[0])
         return base[1] - low[1] - base[2] - self._cell.stiffness_n_m * way_back_m
-
-    def _rubbing_n(self, sample: ContactSample) -> float:
-        """Force against the feed that two sliding points of the walls make, by side and moment."""
-        fit = self._fit
-        bore_m = sample.task_position_tip_m[2] - fit.hole_chamfer_m - fit.peg_chamfer_m
-        # A moment that was not recorded explains nothing.
-        moment_n_m = np.nan_to_num(sample.moment_n_m)[None, :]
-        (ratio,) = jam_ratio(
-            sample.force_n[None, :],
-            moment_n_m,
-            np.array([bore_m]),
-            fit.peg_radius_m,
-            self._cell.friction,
-        )
-        share = 0.0 if np.isnan(ratio) else min(float(ratio), 1.0)
-        return share * max(-float(sample.force_n[2]), 0.0)
 
 
 def dropped_n(feed: Sequence[ContactSample], task: JudgedTask) -> float:

@@ -12,13 +12,9 @@ from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, En
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.split import CurveParts, Samples
+from cellctl.processes.peg_in_hole.verdict.answer import MARGIN_M
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
-from cellctl.processes.peg_in_hole.verdict.lateral import (
-    MARGIN_M,
-    SIDES,
-    Side,
-    push_force_n,
-)
+from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, Side, push_force_n
 from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST
 
 _MEAN_S = 10e-3

@@ -7,8 +7,8 @@ from pydantic import ValidationError
 
 from cellctl.cell.contact_motion.ticks import MotionKind
 from cellctl.geometry.pose import MM, Array
-from cellctl.processes.peg_in_hole.insertion.insert import SEAT_TOLERANCE_M
 from cellctl.processes.peg_in_hole.insertion.jam import jam_ratio
+from cellctl.processes.peg_in_hole.insertion.past_seat import SEAT_TOLERANCE_M
 from cellctl.processes.peg_in_hole.offline.task_file import JudgedPart
 from cellctl.processes.peg_in_hole.record import keys
 from cellctl.processes.peg_in_hole.record.tick_log import ReadTicks, read_ticks

@@ -23,6 +23,7 @@ from cellctl.processes.peg_in_hole.faults import (
     PegSlipped,
     SensorDead,
 )
+from cellctl.processes.peg_in_hole.insertion.felt import LEAST_SLOPE
 from cellctl.processes.peg_in_hole.insertion.with_feed import most_with_feed_n
 from cellctl.processes.peg_in_hole.insertion.zero_jump import most_dropped_n
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
@@ -33,8 +34,6 @@ _MM = 1e-3
 _SEAT_MM, _RETOUCH_MM, _STEADY_MM, _PLAY_MM = 0.3, 0.15, 0.1, 0.1
 HELD_MM = 0.2
 """A part that has slipped by more is told from one that has not (peg_slip of section 5.2)."""
-_LEAST_SLOPE = 0.3
-"""Rise of the force at the seat over the stiffness of arm and contact."""
 _LEAST_SIGMAS = 5.0
 """By so many standard deviations a living sensor's force changes at least between two pushes."""
 MOST_OF_GRIP = 0.6
@@ -149,7 +148,7 @@ def judge_peg(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLimits
 def _seat_checks(evidence: InsertionEvidence, task: JudgedTask, seat: PegSeatLimits) -> Checks:
     depth_m = _known(evidence.depth_m)
     force_n, slope = _known(evidence.seat_force_n), _known(evidence.seat_slope_n_m)
-    least_slope = _LEAST_SLOPE * task.cell.stiffness_n_m
+    least_slope = LEAST_SLOPE * task.cell.stiffness_n_m
     return (
         LimitCheck(DEPTH, abs(depth_m - task.fit.depth_m) / _MM, _SEAT_MM, "mm"),
         LimitCheck(LOW_FORCE, force_n, seat.least_n, "N", "min"),

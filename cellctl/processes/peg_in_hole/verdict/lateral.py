@@ -10,10 +10,16 @@ from cellctl.cell.contact_motion.motions import (
     ContactMotions,
     ContactSample,
     Ended,
+    Vector,
 )
 from cellctl.processes.peg_in_hole.plan.parameters import touch_speed_m_s
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport
+from cellctl.processes.peg_in_hole.verdict.answer import (
+    MARGIN_M,
+    NothingFelt,
+    sensor_answers,
+)
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST, yielded_m
@@ -23,7 +29,6 @@ _FASTEST_M_S = 0.5e-3
 _SPARE_SHARE = 0.5
 """Share of the force between push and limit that a push may take until the arm has answered."""
 _LEAST_PUSH_N = 3.0
-MARGIN_M = 0.1e-3
 _SETTLE_S = 1.0
 """The arm comes back by what it had yielded under the force of the seat."""
 
@@ -49,13 +54,33 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
     begun = (await motions.press(_PRESS_N, _SETTLE_S, LostSupport(_PRESS_N))).last
     speed_m_s = _push_speed_m_s(task, push_n)
     pushes: dict[Side, ContactMotion | None] = {}
-    for axis, sign in SIDES:
-        direction = np.zeros(3)
-        direction[axis] = sign
-        # The second push begins at the first contact and so has to undo what yielded there.
-        way_m = 2 * task.fit.clearance_m + 2 * SOFTEST * yields_m + 2 * MARGIN_M
-        pushes[axis, sign] = await motions.touch(direction, way_m, push_n, speed_m_s)
+    # The second push begins at the first contact and so has to undo what yielded there.
+    way_m = 2 * task.fit.clearance_m + 2 * SOFTEST * yields_m + 2 * MARGIN_M
+    for side in SIDES:
+        push = await motions.touch(
+            _along(side), way_m, push_n, speed_m_s, NothingFelt(task, side[0])
+        )
+        if push.ended is Ended.CONDITION:
+            if not await sensor_answers(motions, task, push.last, _PRESS_N):
+                pushes[side] = push
+                break
+            left_m = way_m - _gone_m(push, side)
+            rest = await motions.touch(_along(side), left_m, push_n, speed_m_s)
+            push = ContactMotion(rest.ended, (*push.samples, *rest.samples))
+        pushes[side] = push
     return capture_of(begun, pushes, task)
+
+
+def _along(side: Side) -> Vector:
+    axis, sign = side
+    direction = np.zeros(3)
+    direction[axis] = sign
+    return direction
+
+
+def _gone_m(push: ContactMotion, side: Side) -> float:
+    way = push.last.task_position_tip_m - push.samples[0].task_position_tip_m
+    return max(0.0, float(way @ _along(side)))
 
 
 def _push_speed_m_s(task: SearchTask, push_n: float) -> float:

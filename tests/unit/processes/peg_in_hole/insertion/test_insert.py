@@ -28,11 +28,15 @@ class Bore(KinematicMotions):
         self.must_stay = False
 
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
         self.greatest_asked_n = max(self.greatest_asked_n, force_limit_n)
         if not self.stands_mm:
-            return await super().feed(depth_m, force_limit_n, until)
+            return await super().feed(depth_m, force_limit_n, until, past_m)
         self.position_m[2] = self.stands_mm.pop(0) * 1e-3
         return ContactMotion(Ended.FORCE, (self.felt(force_limit_n),))
 
@@ -110,9 +114,13 @@ class _Bottomless(Bore):
     """A feed that no force stops: a hole too deep, or a sensor that feels nothing."""
 
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
-        self.position_m[2] = depth_m
+        self.position_m[2] = depth_m + past_m
         return ContactMotion(Ended.TRAVEL, (self.felt(0.5),))
 
 
@@ -120,11 +128,15 @@ class _Unfelt(Bore):
     """Goes on in small steps as long as it is let, and feels the same all the way."""
 
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
         assert until is not None
         samples = []
-        while self.position_m[2] < depth_m:
+        while self.position_m[2] < depth_m + past_m:
             self.position_m[2] += 0.01e-3
             samples.append(self.felt(0.5))
             if until(samples[-1]):

@@ -61,9 +61,13 @@ class KeyedMotions(KinematicMotions):
         return ContactMotion(Ended.TIME, (self._sample(force_n),))
 
     async def feed(
-        self, depth_m: float, force_limit_n: float, until: Condition | None = None
+        self,
+        depth_m: float,
+        force_limit_n: float,
+        until: Condition | None = None,
+        past_m: float = 0.0,
     ) -> ContactMotion:
-        del until
+        del until, past_m
         if self._free():
             self.position_m[2] = depth_m
             return ContactMotion(Ended.TRAVEL, (self._sample(0.0),))

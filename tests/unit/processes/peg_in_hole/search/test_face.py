@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from cellctl.cell.contact_motion.motions import ContactMotion, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactMotion, Ended
 from cellctl.processes.peg_in_hole.faults import (
     FaceAbsent,
     FaceTilted,
@@ -53,8 +53,9 @@ class NothingThere(KinematicMotions):
         travel_m: float,
         force_n: float,
         speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
-        felt = await super().touch(direction, travel_m, force_n, speed_m_s)
+        felt = await super().touch(direction, travel_m, force_n, speed_m_s, until)
         return ContactMotion(Ended.TRAVEL, felt.samples)
 
 
@@ -75,8 +76,9 @@ class GivesWay(KinematicMotions):
         travel_m: float,
         force_n: float,
         speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
-        felt = await super().touch(direction, travel_m, force_n, speed_m_s)
+        felt = await super().touch(direction, travel_m, force_n, speed_m_s, until)
         down_m = np.array([0.0, 0.0, 1e-4])
         samples = [
             replace(
@@ -128,8 +130,9 @@ class ChipUnderTheProof(KinematicMotions):
         travel_m: float,
         force_n: float,
         speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
-        felt = await super().touch(direction, travel_m, force_n, speed_m_s)
+        felt = await super().touch(direction, travel_m, force_n, speed_m_s, until)
         if self.touches == 2:
             felt.last.task_position_tip_m[2] -= 0.3e-3
         return felt

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactMotion, ContactSample, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.lateral import (
@@ -27,10 +27,58 @@ class _PushSpeeds(StandingPeg):
         self.speeds_m_s: list[float | None] = []
 
     async def touch(
-        self, direction: Array, travel_m: float, force_n: float, speed_m_s: float | None = None
+        self,
+        direction: Array,
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+        until: Condition | None = None,
     ) -> ContactMotion:
         self.speeds_m_s.append(speed_m_s)
-        return await super().touch(direction, travel_m, force_n, speed_m_s)
+        return await super().touch(direction, travel_m, force_n, speed_m_s, until)
+
+
+class _Stepping(StandingPeg):
+    """A push goes on in steps as long as it is let, and keeps what it was pushed beyond its walls
+    by."""
+
+    def __init__(self, state: PegState) -> None:
+        super().__init__(pin(stiffness_n_m=1e5, force_sigma_n=0.1), state, np.random.default_rng(1))
+        self.ways_m: list[float] = []
+
+    async def touch(
+        self,
+        direction: Array,
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+        until: Condition | None = None,
+    ) -> ContactMotion:
+        self.ways_m.append(0.0)
+        while True:
+            step = await super().touch(direction, 0.01e-3, force_n, speed_m_s)
+            self.ways_m[-1] += 0.01e-3
+            if step.ended is Ended.FORCE or self.ways_m[-1] >= travel_m:
+                return step
+            if until is not None and until(step.last):
+                return ContactMotion(Ended.CONDITION, step.samples)
+
+
+def test_a_dead_sensor_ends_the_first_push_and_all_others() -> None:
+    motions = _Stepping(PegState.FROZEN)
+    found = asyncio.run(measure_capture(motions, motions.task))
+    assert found.resisted == 0
+    (way_m,) = motions.ways_m
+    assert way_m < 2 * motions.task.fit.clearance_m + 0.15e-3
+
+
+def test_a_hole_that_is_wider_is_pushed_to_its_walls() -> None:
+    motions = _Stepping(PegState.WRONG_HOLE)
+    found = asyncio.run(measure_capture(motions, motions.task))
+    assert found.resisted == 4
+    most_m = 2 * motions.task.fit.clearance_m + 0.1e-3
+    assert found.play_x_m is not None
+    assert found.play_x_m > most_m
 
 
 def _speeds(task: SearchTask) -> list[float]:

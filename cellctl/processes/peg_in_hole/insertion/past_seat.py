@@ -1,0 +1,77 @@
+"""A feed that goes on where the seat should have stopped it.
+
+The hole is deeper, the part slips, or the sensor is dead. A force that is felt makes arm and
+contact yield, so that the tip of a good part goes on beyond its seat; but only a force that rises
+with the way is that of a seat. One that stays, of friction or of a sensor that repeats itself with
+noise, would let the arm press with as much more as it stands for.
+"""
+
+from collections import deque
+
+from cellctl.cell.contact_motion.motions import ContactSample
+from cellctl.processes.peg_in_hole.insertion.felt import (
+    LEAST_SLOPE,
+    OUT_OF_BAND_N,
+    Standing,
+    unloaded_depth_m,
+)
+from cellctl.processes.peg_in_hole.insertion.jam import rubbing_n
+from cellctl.processes.peg_in_hole.plan.task import SearchTask
+
+SEAT_TOLERANCE_M = 0.3e-3
+_IN_A_ROW = 3
+"""Samples: fewer are the noise of a force."""
+_STAYS_M = 0.1e-3
+"""Way on which a force must rise at the seat: the arm goes on by it where a sensor has died."""
+_LEAST_SIGMAS = 8.0
+"""The rise on that way is to be far above the noise."""
+
+
+class PastSeat:
+    """Takes the samples of one feed to a seat that frame A puts ``face_yields_m`` too deep."""
+
+    def __init__(self, task: SearchTask, face_yields_m: float) -> None:
+        self._fit, self._cell, self._face_yields_m = task.fit, task.cell, face_yields_m
+        contacts = task.fit.contacts
+        self._contacts_n = 0.0 if contacts is None else contacts.most_n
+        self._least_n_m = LEAST_SLOPE * task.cell.stiffness_n_m
+        self._stays_m = max(_STAYS_M, _LEAST_SIGMAS * task.cell.force_sigma_n / self._least_n_m)
+        self._way: deque[tuple[Standing, float]] = deque()
+        """Where the tip has been, with the force that neither walls nor contacts explain."""
+        self._past: deque[bool] = deque(maxlen=_IN_A_ROW)
+
+    def take(self, sample: ContactSample) -> bool:
+        """Take the next one; whether the tip is past its seat, or its force does not rise there."""
+        standing = Standing.of(sample)
+        walls_n = rubbing_n(sample, self._fit, self._cell.friction)
+        self._way.append((standing, standing.axial_n - walls_n - self._contacts_n))
+        while len(self._way) > 1 and self._since_m(self._way[1]) >= self._stays_m:
+            self._way.popleft()
+        stays = self._stays()
+        # By a force that stays, arm and contact yield only where contacts of the part make it.
+        yielded_by_n = min(standing.axial_n, self._contacts_n) if stays else standing.axial_n
+        past = self._beyond_m(standing, yielded_by_n) > SEAT_TOLERANCE_M
+        at_seat = self._beyond_m(standing, standing.axial_n) > -SEAT_TOLERANCE_M
+        unexplained = min(self._way[0][1], self._way[-1][1]) > OUT_OF_BAND_N
+        self._past.append(past or (stays and at_seat and unexplained))
+        return sum(self._past) == _IN_A_ROW
+
+    def _stays(self) -> bool:
+        """Whether the force rises neither on the whole way nor on its second half."""
+        if self._since_m(self._way[0]) < self._stays_m:
+            return False
+        halfway = next(one for one in self._way if self._since_m(one) <= 0.5 * self._stays_m)
+        now_n = self._way[-1][0].axial_n
+        return all(
+            now_n - begin[0].axial_n < self._least_n_m * 0.5 * self._stays_m * halves
+            for begin, halves in ((self._way[0], 2), (halfway, 1))
+        )
+
+    def _since_m(self, begin: tuple[Standing, float]) -> float:
+        return self._way[-1][0].depth_m - begin[0].depth_m
+
+    def _beyond_m(self, standing: Standing, yielded_by_n: float) -> float:
+        """How far the tip would be past its seat if it had yielded by a force."""
+        stiffness = self._cell.stiffness_n_m
+        depth_m = unloaded_depth_m(standing.depth_m, yielded_by_n, stiffness, self._face_yields_m)
+        return depth_m - self._fit.depth_m
