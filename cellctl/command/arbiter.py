@@ -176,7 +176,9 @@ class CommandArbiter:
         if not command.alarm_ack_id:
             return RejectCode.NONE
         try:
-            known = await self._unit.alarms.acknowledge(command.alarm_ack_id, command.who)
+            known = await self._unit.alarms.acknowledge(
+                command.alarm_ack_id, command.who, command.alarms_seen
+            )
         except RecordsError as error:
             _log.error("alarm not acknowledged", number=error.number, fault=str(error))
             return RejectCode.RECORDS_NOT_READY

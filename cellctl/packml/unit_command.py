@@ -57,6 +57,8 @@ class UnitCommand:
     """Operator or order, as the caller names it; never who has asked."""
     alarm_ack_id: int = 0
     """Fault number of the alarm to acknowledge."""
+    alarms_seen: int = 0
+    """How many alarms of that number were seen, the oldest first; 0 acknowledges all."""
     arrived_s: float = field(default_factory=now_s, compare=False)
     """Monotonic time in seconds at which the command was given."""
 

@@ -219,11 +219,11 @@ class RunStore(StoredRecords):
             ledger.seal(session, sealed.ALARM, row, row.time)
         return row.id
 
-    def acknowledge_alarms(self, number: int, who: str) -> int:
-        """Acknowledge every active alarm with a fault number; how many there were."""
+    def acknowledge_alarms(self, number: int, who: str, first: int | None = None) -> int:
+        """Acknowledge the ``first`` active alarms with a fault number, or all; how many."""
         with self._database.write() as session:
             active = rows.active_alarm_rows().where(schema.AlarmRow.number == number)
-            found = session.scalars(active).all()
+            found = session.scalars(active.limit(first)).all()
             for row in found:
                 now = utc_now()
                 row.acknowledged, row.acknowledged_by = now, who

@@ -242,6 +242,8 @@ def _alarm(alarm: ActiveAlarm) -> Object:
         "reaction": known.reaction.name.lower(),
         "since": alarm.since.isoformat(timespec="milliseconds"),
         "run": alarm.run,
+        "times": alarm.times,
+        "newest": (alarm.newest or alarm.since).isoformat(timespec="milliseconds"),
     }
 
 

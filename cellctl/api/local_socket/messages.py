@@ -82,10 +82,12 @@ class ModeCommand(Message):
 
 
 class AcknowledgeCommand(Message):
-    """Acknowledge every alarm with this number."""
+    """Acknowledge the alarms with this number that were seen."""
 
     request: Literal["acknowledge"] = "acknowledge"
     number: FaultNumber
+    seen: Annotated[int, Field(ge=0, le=10**9)] = 0
+    """How many of them, as ``times`` of the snapshot says; what came later stays. 0 is all."""
 
 
 CommandRequest = PlainCommand | StartCommand | ProcedureCommand | ModeCommand | AcknowledgeCommand

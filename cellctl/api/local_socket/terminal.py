@@ -168,7 +168,9 @@ class Terminal:
             case ModeCommand():
                 return UnitCommand(Source.TERMINAL, unit_mode=Mode[request.mode.upper()])
             case AcknowledgeCommand():
-                return UnitCommand(Source.TERMINAL, alarm_ack_id=request.number)
+                return UnitCommand(
+                    Source.TERMINAL, alarm_ack_id=request.number, alarms_seen=request.seen
+                )
 
     def _recipe_id(self, wanted: str) -> int:
         """Number of a recipe by name or number; 0, which no recipe has, when there is none."""

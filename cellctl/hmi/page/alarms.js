@@ -2,7 +2,7 @@
 
 import { ask } from "./api.js";
 import { give, whyNot } from "./buttons.js";
-import { h, num, table, time } from "./dom.js";
+import { clock, h, num, table, time, write } from "./dom.js";
 import { cell } from "./live.js";
 import { given, spoken, t } from "./texts.js";
 
@@ -26,13 +26,25 @@ function one(alarm, first, firstSince) {
   const when = after < 0 ? t("before_first", (-after).toFixed(1)) : t("after_first", after.toFixed(1));
   const held = t(cell.snapshot.state === "STOPPED" ? "latched_stopped" : "latched");
   const reason = whyNot("acknowledge");
+  // Those that stand here when it is pressed: one that has come since stays.
+  const seen = (event) => Number(event.target.closest(".alarm").querySelector(".times").dataset.times);
   return h("div", { class: `alarm fresh${first ? " first" : ""}`, "data-number": alarm.number },
     h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${spoken(alarm.text)}`),
     h("p", { class: "dim" }, first ? t("first_out") : when, ` · ${time(alarm.since)}`,
-      alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${held}` : ""),
+      alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${held}` : "", h("span", { class: "times" })),
     h("p", {}, `${t("cause")}: ${given(`cause_${alarm.number}`, alarm.cause)}`), h("p", {}, `${t("what_to_do")}: ${remedy(alarm.number, alarm.remedy)}`),
-    h("div", { class: "row" }, h("button", { type: "button", disabled: Boolean(reason), onclick: () => give("acknowledge", { request: "acknowledge", number: alarm.number }) }, t("acknowledge")),
+    h("div", { class: "row" }, h("button", { type: "button", disabled: Boolean(reason), onclick: (event) => give("acknowledge", { request: "acknowledge", number: alarm.number, seen: seen(event) }) }, t("acknowledge")),
       h("span", { class: "dim" }, reason || t("acknowledge_does"))));
+}
+
+// In its place: a chattering alarm takes no button from under the finger.
+function count(place, alarms) {
+  for (const { number, times = 1, newest } of alarms) {
+    const told = place.querySelector(`[data-number="${number}"] .times`);
+    if (!told) continue;
+    told.dataset.times = times;
+    write(told, times > 1 ? ` · ${t("came_times", times, clock(newest))}` : "");
+  }
 }
 
 // More in an hour than a person can treat.
@@ -75,9 +87,12 @@ export function update(root) {
     known = came;
     past(root.querySelector("#past"));
   }
-  const key = JSON.stringify([alarms, s.state, s.faults.map((fault) => fault.number), document.documentElement.lang, whyNot("acknowledge")]);
-  if (key === drawn) return;
-  drawn = key;
-  place.replaceChildren(h("h2", {}, t("alarms_active", alarms.length)),
-    ...(alarms.length ? alarms.map((alarm, i) => one(alarm, i === 0, alarms[0].since)) : [h("p", {}, t("no_alarms"))]));
+  const lasting = alarms.map(({ times, newest, ...alarm }) => alarm);
+  const key = JSON.stringify([lasting, s.state, s.faults.map((fault) => fault.number), document.documentElement.lang, whyNot("acknowledge")]);
+  if (key !== drawn) {
+    drawn = key;
+    place.replaceChildren(h("h2", {}, t("alarms_active", alarms.length)),
+      ...(alarms.length ? alarms.map((alarm, i) => one(alarm, i === 0, alarms[0].since)) : [h("p", {}, t("no_alarms"))]));
+  }
+  count(place, alarms);
 }

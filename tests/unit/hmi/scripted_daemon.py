@@ -80,6 +80,8 @@ def alarm(number: int, text: str, reaction: str = "abort") -> dict[str, Any]:
         "reaction": reaction,
         "since": "2026-01-02T03:04:05.678+00:00",
         "run": 17,
+        "times": 1,
+        "newest": "2026-01-02T03:04:05.678+00:00",
     }
 
 

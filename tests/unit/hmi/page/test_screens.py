@@ -2,7 +2,12 @@
 
 from playwright.sync_api import expect
 
-from cellctl.api.local_socket.messages import PlainCommand, Refused, StartCommand
+from cellctl.api.local_socket.messages import (
+    AcknowledgeCommand,
+    PlainCommand,
+    Refused,
+    StartCommand,
+)
 from cellctl.fault_catalogue import known_fault
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
@@ -139,6 +144,23 @@ def test_an_alarm_moves_no_button_and_is_acknowledged(screen: Screen, paper: Pap
     alarms.first.get_by_role("button").click()
     screen.tab.wait_for_timeout(300)
     assert paper.asked[-1].command.request == "acknowledge"
+
+
+def test_an_alarm_that_came_again_is_acknowledged_as_often_as_it_was_shown(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    screen.sign_in()
+    again = alarm(207, "too old", "warn") | {"times": 3, "newest": "2026-01-02T03:09:05+00:00"}
+    paper.snapshot = snapshot(alarms=[again])
+    screen.tab.click("nav a[href='#alarms']")
+    expect(screen.tab.locator(".alarm")).to_contain_text("came 3 times, the last time at")
+    button = screen.tab.locator(".alarm button").element_handle()
+    paper.snapshot = snapshot(alarms=[again | {"times": 4}])
+    expect(screen.tab.locator(".alarm")).to_contain_text("came 4 times")
+    assert button.evaluate("element => element.isConnected"), "it stays under the finger"
+    button.click()
+    expect(screen.tab.locator("#age")).to_contain_text("live")
+    assert paper.asked[-1].command == AcknowledgeCommand(number=207, seen=4)
 
 
 def test_the_band_names_every_alarm_and_the_gravest_first(
