@@ -19,6 +19,7 @@ from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.api.modbus.status import require_registers
+from cellctl.calibration.store.validity import LOOK_S
 from cellctl.cell.devices import Cell
 from cellctl.cell.run_notes import RunNotes
 from cellctl.command.arbiter import CommandArbiter
@@ -87,7 +88,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         cell = Cell(config, cell_file.parent)
         loop.add_signal_handler(signal.SIGHUP, tell, signal.SIGHUP)
         stack.callback(cell.workers.close)
-        unit = UnitController(cell, store)
+        unit = UnitController(cell, store, look_s=LOOK_S)
         stack.push_async_callback(unit.background.drain)
         log.always(unit.log_facts)
         # Before anybody can command: runs that an earlier process left open are closed as

@@ -21,7 +21,6 @@ from cellctl.calibration.store.marker import (
     SUFFIX,
     lift_invalidation,
     mark_invalid,
-    marked,
     require_not_invalidated,
 )
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
@@ -43,15 +42,17 @@ class CalibrationStore:
         path: Path,
         kinds: Kinds,
         now: Callable[[], datetime] = utc_now,
+        look_s: float = 0.0,
     ) -> None:
-        """``kinds``: all that the installed processes define.
+        """``kinds``: all that the installed processes define. ``look_s``: how long ``validity_h``,
+        ``least_h`` and ``all_valid`` may rest on an earlier look at the files.
 
         Raises ``ValueError`` when two kinds of one name differ.
         """
         self.path = path
         self.kinds = _by_name(kinds)
         self._now = now
-        self._validity = ValidityClock(path, now)
+        self._validity = ValidityClock(path, now, look_s)
         self.on_stored: list[Callable[[str], None]] = []
         """Called with the name of a calibration after it was made anew."""
         self.on_invalidated: list[Callable[[], None]] = []
@@ -198,7 +199,7 @@ class CalibrationStore:
         With a kind of each recipe, that of no recipe is invalidated.
         """
         kinds = list(kinds)
-        names = marked(self.path)
+        names = self._validity.marked()
         invalidated = any(
             kind.serves_production and kind.includes(name) for kind in kinds for name in names
         )

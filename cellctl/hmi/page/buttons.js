@@ -1,7 +1,7 @@
 // The commands of the cell. What is permitted, and why not, comes from the cell.
 
-import { command } from "./api.js";
-import { clock, corrected, h, write } from "./dom.js";
+import { ask, command } from "./api.js";
+import { clock, corrected, h, time, write } from "./dom.js";
 import { cell, stale } from "./live.js";
 import { given, t } from "./texts.js";
 
@@ -75,11 +75,31 @@ export function longPress(button, act) {
   return button;
 }
 
+// A serial number that has a run already, and how that one ended: known before the robots move.
+async function earlier(serial, said) {
+  const asked = serial.value;
+  let words = "";
+  try {
+    const { runs } = await ask(`runs?limit=20&serial=${encodeURIComponent(asked)}`);
+    const before = runs.find((run) => run.serial === asked);
+    if (before) words = `▲ ${t("used_before", before.number, t(`result_${before.ended_as || "open"}`), time(before.started))}`;
+  } catch { /* whether it may start is the cell's word */ }
+  if (serial.value === asked) write(said, words);
+}
+
+// Until when what production needs stays valid: the first that ends.
+function validUntil() {
+  const ends = (cell.description?.calibrations || []).map((one) => one.valid_until).filter(Boolean).sort();
+  return ends.length ? t("calibrations_until", time(ends[0])) : "";
+}
+
 function startDialog() {
   const recipes = cell.description?.recipes || [];
   const entry = (id, pattern, more = {}) => corrected(h("input", { id, maxlength: 24, pattern, title: t("serial_form"), autocomplete: "off", ...more }), () => t("serial_form"));
   const serial = entry("serial", "[A-Z0-9._\\-]+", { required: true });
   const mate = entry("mate-serial", "[A-Z0-9._\\-]*");
+  const before = h("p", { id: "used-before", class: "bad", role: "status" });
+  serial.addEventListener("change", () => earlier(serial, before));
   const recipe = h("select", { id: "recipe" }, recipes.map((one) => h("option", { value: one.number }, `${one.number} ${one.name}`)));
   const dry = h("input", { type: "checkbox", id: "dry" });
   const dialog = h("dialog", { "aria-label": t("cmd_start") });
@@ -90,7 +110,7 @@ function startDialog() {
   });
   dialog.append(h("h2", {}, t("cmd_start")), h("form", { onsubmit: (event) => event.preventDefault() },
     h("label", {}, t("serial"), serial), h("label", {}, t("mate_serial"), mate), h("label", {}, t("recipe"), recipe), h("label", { class: "tick" }, dry, h("span", {}, t("dry_run")))),
-  h("p", {}, t("does_start")), h("div", { class: "row" }, go,
+  before, h("p", {}, t("does_start")), h("p", { class: "dim" }, validUntil()), h("div", { class: "row" }, go,
     h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))));
   dialog.addEventListener("close", () => dialog.remove());
   document.body.append(dialog);

@@ -76,6 +76,20 @@ def test_a_day_is_shown_as_all_dates_are_and_a_wrong_one_is_called_so(screen: Sc
     assert tab.locator("#find-since").evaluate(message).startswith("请填写日历上有的日期")
 
 
+def test_a_start_tells_of_an_earlier_run_of_this_serial_number(screen: Screen) -> None:
+    tab = screen.tab
+    screen.sign_in()
+    screen.button("start").click()
+    before = tab.locator("#used-before")
+    expect(tab.locator("dialog")).to_contain_text("Calibrations are valid until 2036-01-02")
+    tab.fill("#serial", "SAT-2")
+    tab.locator("#serial").press("Tab")
+    expect(before).to_contain_text("run 2, aborted")
+    tab.fill("#serial", "SAT-22")
+    tab.locator("#serial").press("Tab")
+    expect(before).to_be_empty()
+
+
 def test_a_register_without_a_value_shows_a_dash(screen: Screen) -> None:
     screen.tab.goto(f"{screen.url}#line")
     expect(screen.tab.locator("#from-cell tbody tr").last).to_contain_text("—")
