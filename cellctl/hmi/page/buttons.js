@@ -89,7 +89,7 @@ async function earlier(serial, said) {
 
 // Until when what production needs stays valid: the first that ends.
 function validUntil() {
-  const ends = (cell.description?.calibrations || []).map((one) => one.valid_until).filter(Boolean).sort();
+  const ends = (cell.description?.calibrations || []).map((one) => one.valid_until).filter((end) => end && !end.startsWith("9999")).sort();
   return ends.length ? t("calibrations_until", time(ends[0])) : "";
 }
 
