@@ -7,12 +7,14 @@
 const STALE_S = 1.5;
 const CLOCK_EVERY_MS = 2000;
 const CLOCKS_KEPT = 30;
+const SILENT_S = 3;
 
 export const cell = { snapshot: null, description: null, refused: "" };
 const offsets = [];
 const watchers = new Set();
 let stream = null;
 let hidden = 0;
+let heardS = 0;
 
 const page = () => performance.now() / 1000;
 
@@ -33,10 +35,14 @@ async function askClock() {
     if (!answer.ok) return;
     offsets.push((await answer.json()).mono_s - t0);
     if (offsets.length > CLOCKS_KEPT) offsets.shift();
+    // Whoever answers sends a beat each second. A stream without one died while the cable was out, and
+    // nobody has told the browser, which would listen to it for ever.
+    if (stream && page() - heardS > SILENT_S) open();
   } catch { /* no answer: the age goes on growing, which is what the page shows */ }
 }
 
 function take(kind, event) {
+  heardS = page();
   cell[kind] = JSON.parse(event.data);
   cell.refused = "";
   tell(kind);
@@ -53,7 +59,9 @@ async function whyNot() {
 
 export function open() {
   close();
+  heardS = page();
   stream = new EventSource("/api/v1/events");
+  stream.addEventListener("beat", () => { heardS = page(); });
   stream.addEventListener("snapshot", (event) => take("snapshot", event));
   stream.addEventListener("description", (event) => take("description", event));
   stream.addEventListener("open", () => tell("open"));
