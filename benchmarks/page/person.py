@@ -39,7 +39,7 @@ class Person:
         return found if "state" in found else {}
 
     def until(
-        self, what: str, seen: Any, timeout_s: float = 240.0, *, faults: bool = False
+        self, what: str, seen: Any, timeout_s: float = 1500.0, *, faults: bool = False
     ) -> dict[str, Any]:
         """The snapshot in which ``seen`` is true for the first time.
 

@@ -22,9 +22,9 @@ export function svg(tag, attributes = {}, ...children) {
   return fill(document.createElementNS(SVG, tag), attributes, children);
 }
 
-// A value that is missing is a dash: never the last one, and never zero.
+// A value that is missing is a dash: never the last one, and never zero. What rounds to zero has no sign.
 export function shown(value, digits = 3) {
-  return typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits) : "—";
+  return typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1") : "—";
 }
 
 // Year, month, day and 24 hours, which nobody mistakes, in every language of the page.

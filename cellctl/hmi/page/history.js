@@ -99,15 +99,15 @@ function seal(as) {
   return as ? t("as_sealed") : h("span", { class: "bad" }, `■ ${t("not_as_sealed")}`);
 }
 
-function within(lower, upper) {
+function within(lower, upper, unit) {
   const given = (value) => typeof value === "number";
-  if (given(lower) && given(upper)) return `${shown(lower)} … ${shown(upper)}`;
-  return given(upper) ? `≤ ${shown(upper)}` : given(lower) ? `≥ ${shown(lower)}` : "—";
+  if (given(lower) && given(upper)) return `${shown(lower)} … ${shown(upper)} ${unit}`;
+  return given(upper) ? `≤ ${shown(upper)} ${unit}` : given(lower) ? `≥ ${shown(lower)} ${unit}` : "—";
 }
 
 function figures(run) {
   return table([t("figure"), num(t("value")), t("limits"), t("verdict")], run.figures.map((one) => [one.label, num(`${shown(one.value)} ${one.unit}`),
-    within(one.lower, one.upper), one.verdict ? verdict(one.verdict) : "—"]));
+    within(one.lower, one.upper, one.unit), one.verdict ? verdict(one.verdict) : "—"]));
 }
 
 function passes(run) {

@@ -11,6 +11,7 @@ import pytest
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.hmi.people import secret_of
+from cellctl.records.figures import Limit, figure
 from cellctl.records.store import RunStore
 from tests.unit.hmi.http_client import Client
 from tests.unit.hmi.scripted_daemon import PIN, PaperDaemon, page_thread, serving
@@ -33,6 +34,9 @@ def _store(folder: Path) -> None:
     for serial, result in (("SAT-1", "good"), ("SAT-2", "aborted")):
         number = store.start_run(serial=serial, calibration_ids={"head": f"id-{serial}"}, **opening)
         store.begin_phase(number, 10, "measure")
+        store.add(
+            number, figure("peak", 41.5, "N", label="greatest force", limit=Limit(upper=50.0))
+        )
         store.add_artefact(number, "look.png", b"\x89PNG of " + serial.encode(), "image/png")
         store.add_artefact(number, "page.html", b"<script>1</script>", "text/html")
         store.add_alarm(number, 512, "F512 Force limit exceeded: Fz -50.8 N, limit 50.0")

@@ -90,6 +90,20 @@ def test_a_start_tells_of_an_earlier_run_of_this_serial_number(screen: Screen) -
     expect(before).to_be_empty()
 
 
+def test_limits_have_their_unit(screen: Screen) -> None:
+    screen.tab.goto(f"{screen.url}#history/1")
+    row = screen.tab.locator("main tbody tr", has_text="greatest force")
+    expect(row.locator("td").nth(1)).to_have_text("41.500 N")
+    expect(row.locator("td").nth(2)).to_have_text("≤ 50.000 N")
+
+
+def test_what_rounds_to_zero_has_no_sign(screen: Screen, paper: PaperDaemon) -> None:
+    error = {"axis": "x", "unit": "mm", "value": -0.0002, "limit": 0.05}
+    paper.snapshot = snapshot(errors=[error, error | {"value": -0.0006}])
+    values = screen.tab.locator("#errors tbody td:nth-child(2)")
+    expect(values).to_have_text(["0.000 mm", "-0.001 mm"])
+
+
 def test_a_register_without_a_value_shows_a_dash(screen: Screen) -> None:
     screen.tab.goto(f"{screen.url}#line")
     expect(screen.tab.locator("#from-cell tbody tr").last).to_contain_text("—")
