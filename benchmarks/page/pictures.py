@@ -67,7 +67,7 @@ def main(
             own.daemon().ready()
             settings, own.pin = write_settings(own.folder)
             # On a busy computer a part takes longer than a session lasts that nobody uses.
-            text = settings.read_text("utf-8").replace("port = 0", "port = 0\nidle_s = 36000")
+            text = settings.read_text("utf-8").replace("port = 0", "port = 0\nidle_s = 3600")
             settings.write_text(text, "utf-8")
             url = str(own.page(settings).ready()["url"])
             with chromium() as browser:
