@@ -48,7 +48,7 @@ class Camera:
     def _speak(self, language: str) -> None:
         if self.person.tab.evaluate("document.documentElement.lang") != language:
             self.person.tab.click("#language")
-            self.person.tab.wait_for_timeout(300)
+            self.person.tab.wait_for_selector(f"html[lang={language}]")
 
 
 def main(

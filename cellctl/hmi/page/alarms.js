@@ -4,7 +4,7 @@ import { ask } from "./api.js";
 import { give, whyNot } from "./buttons.js";
 import { clock, h, num, table, time, write } from "./dom.js";
 import { cell } from "./live.js";
-import { given, spoken, t } from "./texts.js";
+import { colon, given, spoken, t } from "./texts.js";
 
 export const PRIORITY = { abort: 1, stop: 2, hold: 2, warn: 3 };
 export const MARKS = { 1: "■1", 2: "▲2", 3: "▼3" };
@@ -32,7 +32,7 @@ function one(alarm, first, firstSince) {
     h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${spoken(alarm.text)}`),
     h("p", { class: "dim" }, first ? t("first_out") : when, ` · ${time(alarm.since)}`,
       alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${held}` : "", h("span", { class: "times" })),
-    h("p", {}, `${t("cause")}: ${given(`cause_${alarm.number}`, alarm.cause)}`), h("p", {}, `${t("what_to_do")}: ${remedy(alarm.number, alarm.remedy)}`),
+    h("p", {}, `${t("cause")}${colon()}${given(`cause_${alarm.number}`, alarm.cause)}`), h("p", {}, `${t("what_to_do")}${colon()}${remedy(alarm.number, alarm.remedy)}`),
     h("div", { class: "row" }, h("button", { type: "button", disabled: Boolean(reason), onclick: (event) => give("acknowledge", { request: "acknowledge", number: alarm.number, seen: seen(event) }) }, t("acknowledge")),
       h("span", { class: "dim" }, reason || t("acknowledge_does"))));
 }

@@ -3,7 +3,7 @@
 import { ask } from "./api.js";
 import { h, num, shown, table, time } from "./dom.js";
 import { cell } from "./live.js";
-import { spoken, t } from "./texts.js";
+import { colon, spoken, t } from "./texts.js";
 
 const DUE_DAYS = 14;
 
@@ -37,7 +37,7 @@ async function trend(root, kind) {
     const value = (one, name) => one.checks.find((check) => check.name === name);
     const cell = (check) => num(check ? h("span", { class: check.passed ? "" : "bad" }, check.passed ? "" : "■ ", shown(check.value)) : "—");
     const rows = (newest?.checks || []).map((check) => [check.name, ...made.map((one) => cell(value(one, check.name))), num(`${RELATION[check.side]} ${shown(check.limit)} ${check.unit}`)]);
-    const void_ = made.filter((one) => one.invalidated).map((one) => h("p", { class: "bad" }, `■ ${time(one.made)}: ${t("void_since", time(one.invalidated), one.invalidated_reason)}`));
+    const void_ = made.filter((one) => one.invalidated).map((one) => h("p", { class: "bad" }, `■ ${time(one.made)}${colon()}${t("void_since", time(one.invalidated), one.invalidated_reason)}`));
     place.replaceChildren(h("h2", {}, t("trend_of", kind)), rows.length ? table([t("figure"), ...made.map((one) => num(one.made.slice(0, 10))), num(t("limit"))], rows) : h("p", {}, t("no_trend")), ...void_);
   } catch (error) { place.replaceChildren(h("p", { class: "bad" }, t("not_read", error.message))); }
 }

@@ -2,7 +2,7 @@
 
 import { h, num, table } from "./dom.js";
 import { cell } from "./live.js";
-import { t } from "./texts.js";
+import { colon, t } from "./texts.js";
 
 function block(writer) {
   const items = (cell.description?.registers || []).filter((one) => one.writer === writer);
@@ -20,7 +20,7 @@ export function build(root) {
 export function update(root) {
   const alive = root.querySelector("#line-alive");
   if (!alive || !cell.snapshot) return;
-  alive.textContent = `${t("line_plc")}: ${t(cell.snapshot.line_alive ? "alive" : "not_there")} · ${t(`control_${cell.snapshot.control}`)}`;
+  alive.textContent = `${t("line_plc")}${colon()}${t(cell.snapshot.line_alive ? "alive" : "not_there")} · ${t(`control_${cell.snapshot.control}`)}`;
   if (drawn === cell.description) return;
   drawn = cell.description;
   root.querySelector("#from-cell").replaceChildren(...block("cell"));

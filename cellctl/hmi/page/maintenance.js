@@ -7,7 +7,7 @@ import { controls, give, longPress, refresh } from "./buttons.js";
 import { life, within } from "./calibration.js";
 import { h, table, time, write } from "./dom.js";
 import { cell } from "./live.js";
-import { given, label, spoken, t } from "./texts.js";
+import { colon, given, label, spoken, t } from "./texts.js";
 
 const AT_REST = new Set(["IDLE", "STOPPED", "ABORTED", "COMPLETED"]);
 const ticked = new Map();
@@ -93,14 +93,14 @@ function progress(root, s, at) {
   bar.firstChild.style.width = `${part ?? 0}%`;
   if (part === null) bar.removeAttribute("aria-valuenow");
   else bar.setAttribute("aria-valuenow", part);
-  root.querySelector("#progress").textContent = at === "under_way" ? `${given(`state_${s.state}`, s.state)}: ${label(s.step.text) || "…"}` : "—";
+  root.querySelector("#progress").textContent = at === "under_way" ? `${given(`state_${s.state}`, s.state)}${colon()}${label(s.step.text) || "…"}` : "—";
 }
 
 function outcome(s, at) {
   if (at !== "after") return "—";
   const fault = s.faults[0];
   const good = s.run.result === "good" || s.state === "COMPLETED";
-  const words = fault ? `■ ${spoken(fault.text)} ${t("what_to_do")}: ${given(`remedy_${fault.number}`, fault.remedy)}` : t(`result_${good ? "done" : s.run.result}`);
+  const words = fault ? `■ ${spoken(fault.text)} ${t("what_to_do")}${colon()}${given(`remedy_${fault.number}`, fault.remedy)}` : t(`result_${good ? "done" : s.run.result}`);
   return s.run.number ? `${words} · ${t("run", s.run.number)}` : words;
 }
 
@@ -115,7 +115,7 @@ function draw(root, s, one) {
     else place.removeAttribute("aria-current");
   }
   refresh(root, { procedure: complete ? "" : t("tick_first"), mode: s.mode === "MAINTENANCE" ? t("is_maintenance") : "" });
-  root.querySelector("#mode-now").textContent = `${t("mode")}: ${t(`mode_${s.mode}`)} · ${given(`state_${s.state}`, s.state)}`;
+  root.querySelector("#mode-now").textContent = `${t("mode")}${colon()}${t(`mode_${s.mode}`)} · ${given(`state_${s.state}`, s.state)}`;
   progress(root, s, at);
   write(root.querySelector("#outcome"), outcome(s, at));
   if (at === "under_way") { ticks.clear(); for (const box of root.querySelectorAll("[id^=tick-]")) box.checked = false; }

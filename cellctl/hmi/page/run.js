@@ -4,7 +4,7 @@ import { ask } from "./api.js";
 import { commands, refresh } from "./buttons.js";
 import { bar, h, num, shown, svg, table } from "./dom.js";
 import { cell } from "./live.js";
-import { given, label, t } from "./texts.js";
+import { colon, given, label, t } from "./texts.js";
 
 const CURVE_S = 30;
 const curve = [];
@@ -79,8 +79,8 @@ function force(force, index) {
   const why = force.stale ? t("force_stale", shown(force.age_s, 0)) : force.compensated ? null : t("not_compensated");
   const fz = force.wrench.find((one) => one.axis === "Fz")?.value;
   return [h("h2", {}, t("force", force.sensor)),
-    force.trip ? h("p", { class: "bad" }, `■ ${t("tripped")}: ${force.trip}`) : null,
-    force.touch ? h("p", { class: "dim" }, `${t("touched")}: ${force.touch}`) : null,
+    force.trip ? h("p", { class: "bad" }, `■ ${t("tripped")}${colon()}${force.trip}`) : null,
+    force.touch ? h("p", { class: "dim" }, `${t("touched")}${colon()}${force.touch}`) : null,
     h("div", { class: "value live" }, `${shown(fz, 1)} N`, h("span", { class: "dim" }, ` / ${shown(force.limit_n, 0)} N`)),
     bar(fz, force.limit_n, true), plot(index, force.limit_n),
     h("p", { class: `${force.stale ? "bad" : "dim"} live force-axes` }, why ?? force.wrench.map((one) => h("span", {}, `${one.axis} ${shown(one.value, one.unit === "N" ? 1 : 2)} ${one.unit}`)))];

@@ -33,7 +33,7 @@ export function t(key, ...values) {
 // What the daemon said in English, unless the language has words of its own for its number.
 export const given = (key, english) => words[key] ?? (english || (fallback[key] ?? ""));
 
-const colon = () => (language === "zh" ? "：" : ": ");
+export const colon = () => (language === "zh" ? "：" : ": ");
 
 // "F207 Data from a device is too old: facts" in this language, also where one fault is told in the
 // facts of another. Facts stay as they are, and so does a fault in other words than today's.

@@ -70,6 +70,7 @@ def test_a_day_is_shown_as_all_dates_are_and_a_wrong_one_is_called_so(screen: Sc
     tab.click("form button")
     expect(tab.locator("#found")).to_contain_text("No runs found.")
     tab.click("#language")
+    expect(tab.locator("form button")).to_have_text("搜索")
     # Half of a day, which only a keyboard can write.
     tab.locator("#find-since").press_sequentially("31")
     tab.click("form button")

@@ -196,7 +196,7 @@ def test_an_alarm_and_a_step_are_told_in_chinese(screen: Screen, paper: PaperDae
     expect(tab.locator("#now")).to_contain_text(label("head_1: view 2 of 3", "zh"))
     tab.click("nav a[href='#alarms']")
     alarms = tab.locator(".alarm")
-    expect(alarms.first).to_contain_text(chinese.cause)
+    expect(alarms.first).to_contain_text(f"原因：{chinese.cause}")
     expect(alarms.first).to_contain_text(chinese.remedy)
     expect(alarms.last).to_contain_text("F1999 of a plug-in")
     expect(alarms.last).to_contain_text("a remedy")
