@@ -106,6 +106,7 @@ function within(lower, upper, unit) {
 }
 
 function figures(run) {
+  if (!run.figures.length) return "";
   return table([t("figure"), num(t("value")), t("limits"), t("verdict")], run.figures.map((one) => [one.label, num(`${shown(one.value)} ${one.unit}`),
     within(one.lower, one.upper, one.unit), one.verdict ? verdict(one.verdict) : "—"]));
 }
