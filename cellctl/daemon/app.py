@@ -88,7 +88,8 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         cell = Cell(config, cell_file.parent)
         loop.add_signal_handler(signal.SIGHUP, tell, signal.SIGHUP)
         stack.callback(cell.workers.close)
-        unit = UnitController(cell, store, look_s=LOOK_S)
+        unit = UnitController(cell, store)
+        unit.calibrations.look_every(LOOK_S)
         stack.push_async_callback(unit.background.drain)
         log.always(unit.log_facts)
         # Before anybody can command: runs that an earlier process left open are closed as

@@ -46,13 +46,8 @@ AT_REST = frozenset({State.STOPPED, State.IDLE, State.COMPLETED, State.ABORTED})
 class UnitController:
     """Joins state machine, devices and records. Belongs to one event loop."""
 
-    def __init__(
-        self, cell: Cell, store: AsyncRunStore, clock: Monotonic = now_s, *, look_s: float = 0.0
-    ) -> None:
-        """``look_s`` is that of the ``CalibrationStore``.
-
-        Raises ``UnknownDriver`` when a process of the cell file is not installed.
-        """
+    def __init__(self, cell: Cell, store: AsyncRunStore, clock: Monotonic = now_s) -> None:
+        """Raises ``UnknownDriver`` when a process of the cell file is not installed."""
         self._cell = cell
         self._store = store
         self._jobs = JobRunner(cell.time_limits)
@@ -62,9 +57,7 @@ class UnitController:
         self.background = Background()
         self.alarms = Alarms(store, self.background)
         self.calibrations = CalibrationStore(
-            cell.folder / cell.config.calibration_dir,
-            calibration_kinds(cell.config),
-            look_s=look_s,
+            cell.folder / cell.config.calibration_dir, calibration_kinds(cell.config)
         )
         services = CellServices(cell, self.calibrations, self.board, store)
         self._processes = open_processes(services)

@@ -42,21 +42,23 @@ class CalibrationStore:
         path: Path,
         kinds: Kinds,
         now: Callable[[], datetime] = utc_now,
-        look_s: float = 0.0,
     ) -> None:
-        """``kinds``: all that the installed processes define. ``look_s``: how long ``validity_h``,
-        ``least_h`` and ``all_valid`` may rest on an earlier look at the files.
+        """``kinds``: all that the installed processes define.
 
         Raises ``ValueError`` when two kinds of one name differ.
         """
         self.path = path
         self.kinds = _by_name(kinds)
         self._now = now
-        self._validity = ValidityClock(path, now, look_s)
+        self._validity = ValidityClock(path, now)
         self.on_stored: list[Callable[[str], None]] = []
         """Called with the name of a calibration after it was made anew."""
         self.on_invalidated: list[Callable[[], None]] = []
         """Called before calibrations are invalidated, whichever they are."""
+
+    def look_every(self, seconds: float) -> None:
+        """Let ``validity_h``, ``least_h`` and ``all_valid`` rest on a look at the files so long."""
+        self._validity.look_s = seconds
 
     def read(self, kind: CalibrationKind[T], until: datetime | None = None) -> T:
         """One result, valid until then; without ``until`` neither date nor verdict count.

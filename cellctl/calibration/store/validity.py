@@ -36,7 +36,7 @@ class ValidityClock:
     ) -> None:
         self._folder = folder
         self._now = now
-        self._look_s = look_s
+        self.look_s = look_s
         self._clock = clock
         self._known: dict[str, tuple[Stamp, StoredCalibration | None]] = {}
         self._marked: list[str] = []
@@ -69,7 +69,7 @@ class ValidityClock:
 
     def _is_due(self, name: str) -> bool:
         time_s = self._clock()
-        if time_s - self._looked_s.get(name, -math.inf) < self._look_s:
+        if time_s - self._looked_s.get(name, -math.inf) < self.look_s:
             return False
         self._looked_s[name] = time_s
         return True

@@ -67,7 +67,8 @@ def test_what_another_program_marks_is_seen_after_a_while(folder: Path) -> None:
 
 
 def test_what_the_store_changes_itself_is_seen_at_once(folder: Path) -> None:
-    store = CalibrationStore(folder, CALIBRATIONS, look_s=3600.0)
+    store = CalibrationStore(folder, CALIBRATIONS)
+    store.look_every(3600.0)
     assert store.all_valid(CALIBRATIONS)
     store.invalidate([PAYLOAD], "a collision")
     assert not store.all_valid(CALIBRATIONS)
