@@ -67,7 +67,9 @@ class JudgingDaemon(PaperDaemon):
         self, request: CommandRequest, who: str, _details: Mapping[str, str]
     ) -> Taken | Refused:
         self.obeyed.append((who, request.request))
-        state = STATES[request.request]
+        # What two people press at once may come in any order: a Stop does not end an abort.
+        aborted = self.snapshot["state"] == "ABORTED" and request.request == "stop"
+        state = "ABORTED" if aborted else STATES[request.request]
         last = {"who": f"page:{who}", "command": request.request, "time": "2026-01-02T10:03:04Z"}
         changes = {"state": state, "state_requested": state, "last_command": last}
         self.snapshot = self.snapshot | changes | {"decision": self._decision() + 1}
