@@ -84,3 +84,21 @@ def test_a_dead_sensor_lets_a_press_sink_only_by_what_a_soft_arm_would_yield() -
     standing = asyncio.run(StandingPeg.press(motions, 2.0, 0.1)).last
     asyncio.run(sensor_answers(motions, _TASK, standing, 2.0))
     assert motions.sunk_in_m[0] < 0.09e-3
+
+
+class _Wavering(_Pressed):
+    """What ends the press is felt once, and a little less when the arm has come to rest."""
+
+    async def press(
+        self, force_n: float, hold_s: float, until: Condition | None = None
+    ) -> ContactMotion:
+        pressed = await super().press(force_n, hold_s, until)
+        after = _sample(0.0, 0.0)
+        after.force_n[2] = -2.9
+        return ContactMotion(pressed.ended, (*pressed.samples, after))
+
+
+def test_what_was_felt_once_counts() -> None:
+    motions = _Wavering(PegState.WRONG_HOLE)
+    standing = asyncio.run(StandingPeg.press(motions, 2.0, 0.1)).last
+    assert asyncio.run(sensor_answers(motions, _TASK, standing, 2.0))
