@@ -101,11 +101,12 @@ def read_stored(folder: Path, kind: str) -> StoredCalibration:
     if isinstance(content, dict) and "id" in content and "format" not in content:
         raise CalibrationOfOldForm(f"{path}")
     stored, _ = parse_content(path, content)
-    if fits_its_id(content) and stored.kind != kind:
+    intact = fits_its_id(content)
+    if intact and stored.kind != kind:
         raise CalibrationRecordInvalid(
             f"{path}: it holds {stored.kind}, so the file was renamed, copied or exchanged"
         )
-    if not fits_its_id(content) or content["format"] != FORMAT:
+    if not intact or content["format"] != FORMAT:
         raise CalibrationRecordInvalid(f"{path}: content does not match its id; it was changed")
     return stored
 

@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager, suppress
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, get_args
+from typing import Annotated
 
 import typer
 
@@ -26,8 +26,6 @@ _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
 _INTERRUPTED = 130
 """Exit code of what Ctrl-C has ended, as shells have it."""
 _ENDED = ("COMPLETED", "STOPPED", "ABORTED", "HELD")
-_COMMANDS = (*get_args(PlainName), "start", "complete", "suspend", "unsuspend")
-"""As the audit log names them, those of the line included."""
 Wait = Annotated[
     bool,
     typer.Option("--wait", help="Until it has ended; exit code 0 only if good."),
@@ -271,11 +269,12 @@ def _whose(report: StatusReport) -> str:
     """Whose command led the cell elsewhere; empty where the newest command is another one."""
     # As in ``_came_again``: only who has to be told of it needs the run store.
     from cellctl.cli.records.run_store import opened_store
+    from cellctl.packml.command import COMMAND_NAMES
     from cellctl.records.entered.said_by import said_by
 
     led = {"STOPPED": "stop", "ABORTED": "abort", "HELD": "hold"}.get(report.state)
     with suppress(StoreUnavailable), opened_store(Path(report.data_dir)) as store:
-        commands = [one for one in store.audit_log() if one.action in _COMMANDS]
+        commands = [one for one in store.audit_log() if one.action in COMMAND_NAMES.values()]
         if commands and commands[-1].action == led:
             last = commands[-1]
             return f" by the command {led} of {said_by(last)}, {last.time:%H:%M:%S} UTC"

@@ -94,14 +94,12 @@ def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
     return float(np.polyfit(depth_m[begin:], axial_n[begin:], 1)[0])
 
 
-def unloaded_depth_m(
-    depth_m: float, axial_n: float, stiffness_n_m: float, face_yields_m: float
-) -> float:
+def unloaded_depth_m(standing: Standing, stiffness_n_m: float, face_yields_m: float) -> float:
     """Depth of the tip, which arm and contact have yielded under the force to get beyond.
 
     Frame A lies deeper than the face by ``face_yields_m``, by what the touches of the face yielded.
     """
-    return depth_m - axial_n / stiffness_n_m + face_yields_m
+    return standing.depth_m - standing.axial_n / stiffness_n_m + face_yields_m
 
 
 def greatest_axial_n(samples: Sequence[ContactSample]) -> float:

@@ -19,6 +19,7 @@ from cellctl.processes.peg_in_hole.faults import (
     NotSeated,
     PegJammed,
     PegNotInserted,
+    PegSlipped,
     PegWedged,
 )
 from cellctl.processes.peg_in_hole.insertion.felt import (
@@ -121,18 +122,24 @@ class _Feed:
         motion = await self._motions.feed(self._task.fit.depth_m, limit_n, wrong, past_m)
         self._samples += motion.samples
         if motion.ended is Ended.CONDITION:
-            raise self._fault(Standing.of(motion.last), ended_by, watched, jump)
+            raise self._fault(Standing.of(motion.last), ended_by, watched, jump, past_seat)
         return motion
 
     @staticmethod
     def _fault(
-        standing: Standing, ended_by: list[bool], watched: ForceWithFeed, jump: ZeroJump
+        standing: Standing,
+        ended_by: list[bool],
+        watched: ForceWithFeed,
+        jump: ZeroJump,
+        past_seat: PastSeat,
     ) -> PegNotInserted:
         with_feed, dropped, _ = ended_by
         if with_feed:
             return ForceActsWithFeed(f"{watched.greatest_n:.1f} N into the hole: {standing}")
         if dropped:
             return ForceDropped(f"by {jump.dropped_n:.1f} N: {standing}")
+        if past_seat.held:
+            return PegSlipped(f"the force does not rise at the seat: {standing}")
         return NotSeated(f"nothing has stopped the feed at the seat: {standing}")
 
     def short_of_seat(self, motion: ContactMotion) -> bool:
@@ -141,8 +148,7 @@ class _Feed:
         return reached_m < self._task.fit.depth_m - SEAT_TOLERANCE_M
 
     def _unloaded_m(self, standing: Standing) -> float:
-        stiffness = self._task.cell.stiffness_n_m
-        return unloaded_depth_m(standing.depth_m, standing.axial_n, stiffness, self._face_yields_m)
+        return unloaded_depth_m(standing, self._task.cell.stiffness_n_m, self._face_yields_m)
 
     def result(self, motion: ContactMotion, recoveries: tuple[str, ...]) -> Fed:
         """What is known at the end of the last feed."""

@@ -7,6 +7,8 @@ noise, would let the arm press with as much more as it stands for.
 """
 
 from collections import deque
+from dataclasses import replace
+from typing import NamedTuple
 
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.processes.peg_in_hole.insertion.felt import (
@@ -27,6 +29,14 @@ _LEAST_SIGMAS = 8.0
 """The rise on that way is to be far above the noise."""
 
 
+class _Felt(NamedTuple):
+    """At one place of the way."""
+
+    standing: Standing
+    unexplained_n: float
+    """Force against the feed that neither walls nor contacts of the part make."""
+
+
 class PastSeat:
     """Takes the samples of one feed to a seat that frame A puts ``face_yields_m`` too deep."""
 
@@ -36,42 +46,47 @@ class PastSeat:
         self._contacts_n = 0.0 if contacts is None else contacts.most_n
         self._least_n_m = LEAST_SLOPE * task.cell.stiffness_n_m
         self._stays_m = max(_STAYS_M, _LEAST_SIGMAS * task.cell.force_sigma_n / self._least_n_m)
-        self._way: deque[tuple[Standing, float]] = deque()
-        """Where the tip has been, with the force that neither walls nor contacts explain."""
+        self._way: deque[_Felt] = deque()
         self._past: deque[bool] = deque(maxlen=_IN_A_ROW)
+        self.held = False
+        """Whether something holds the tip back at its seat with a force that does not rise."""
 
     def take(self, sample: ContactSample) -> bool:
         """Take the next one; whether the tip is past its seat, or its force does not rise there."""
         standing = Standing.of(sample)
         walls_n = rubbing_n(sample, self._fit, self._cell.friction)
-        self._way.append((standing, standing.axial_n - walls_n - self._contacts_n))
+        self._way.append(_Felt(standing, standing.axial_n - walls_n - self._contacts_n))
         while len(self._way) > 1 and self._since_m(self._way[1]) >= self._stays_m:
             self._way.popleft()
         stays = self._stays()
+        self.held = stays and self._held_at_seat()
         # By a force that stays, arm and contact yield only where contacts of the part make it.
         yielded_by_n = min(standing.axial_n, self._contacts_n) if stays else standing.axial_n
-        past = self._beyond_m(standing, yielded_by_n) > SEAT_TOLERANCE_M
-        at_seat = self._beyond_m(standing, standing.axial_n) > -SEAT_TOLERANCE_M
-        unexplained = min(self._way[0][1], self._way[-1][1]) > OUT_OF_BAND_N
-        self._past.append(past or (stays and at_seat and unexplained))
+        past = self._beyond_m(replace(standing, axial_n=yielded_by_n)) > SEAT_TOLERANCE_M
+        self._past.append(past or self.held)
         return sum(self._past) == _IN_A_ROW
+
+    def _held_at_seat(self) -> bool:
+        begin, now = self._way[0], self._way[-1]
+        at_seat = self._beyond_m(now.standing) > -SEAT_TOLERANCE_M
+        return at_seat and min(begin.unexplained_n, now.unexplained_n) > OUT_OF_BAND_N
 
     def _stays(self) -> bool:
         """Whether the force rises neither on the whole way nor on its second half."""
         if self._since_m(self._way[0]) < self._stays_m:
             return False
-        halfway = next(one for one in self._way if self._since_m(one) <= 0.5 * self._stays_m)
-        now_n = self._way[-1][0].axial_n
-        return all(
-            now_n - begin[0].axial_n < self._least_n_m * 0.5 * self._stays_m * halves
-            for begin, halves in ((self._way[0], 2), (halfway, 1))
-        )
+        half_m = 0.5 * self._stays_m
+        halfway = next(one for one in self._way if self._since_m(one) <= half_m)
+        return self._rises_less(self._way[0], self._stays_m) and self._rises_less(halfway, half_m)
 
-    def _since_m(self, begin: tuple[Standing, float]) -> float:
-        return self._way[-1][0].depth_m - begin[0].depth_m
+    def _rises_less(self, begin: _Felt, way_m: float) -> bool:
+        risen_n = self._way[-1].standing.axial_n - begin.standing.axial_n
+        return risen_n < self._least_n_m * way_m
 
-    def _beyond_m(self, standing: Standing, yielded_by_n: float) -> float:
-        """How far the tip would be past its seat if it had yielded by a force."""
-        stiffness = self._cell.stiffness_n_m
-        depth_m = unloaded_depth_m(standing.depth_m, yielded_by_n, stiffness, self._face_yields_m)
-        return depth_m - self._fit.depth_m
+    def _since_m(self, begin: _Felt) -> float:
+        return self._way[-1].standing.depth_m - begin.standing.depth_m
+
+    def _beyond_m(self, standing: Standing) -> float:
+        """How far the tip is past its seat, less what its force makes it yield."""
+        unloaded_m = unloaded_depth_m(standing, self._cell.stiffness_n_m, self._face_yields_m)
+        return unloaded_m - self._fit.depth_m

@@ -8,6 +8,7 @@ from collections import deque
 from collections.abc import Sequence
 
 from cellctl.cell.contact_motion.motions import ContactSample
+from cellctl.processes.peg_in_hole.insertion.felt import LEAST_SLOPE
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell
 
 LEAST_SIGN_N = 2.0
@@ -16,8 +17,6 @@ _LEAST_SIGMAS = 8.0
 """A change by so many standard deviations is none of the noise (sensor_spike of section 5.2)."""
 _IN_A_ROW = 3
 """Fewer samples are a spike."""
-_SOFTEST = 0.3
-"""Least stiffness of arm and contact over what the cell says: that of a seat."""
 
 
 def most_with_feed_n(cell: JudgedCell) -> float:
@@ -41,7 +40,7 @@ class ForceWithFeed:
         if self._counts_from_m is None:
             # A peg that was drawn back is held by its walls until the arm has come back by what
             # they had made it yield.
-            yields_m = max(with_feed_n, 0.0) / (_SOFTEST * self._cell.stiffness_n_m)
+            yields_m = max(with_feed_n, 0.0) / (LEAST_SLOPE * self._cell.stiffness_n_m)
             self._counts_from_m = depth_m + yields_m
         if depth_m >= self._counts_from_m:
             self._latest_n.append(with_feed_n)

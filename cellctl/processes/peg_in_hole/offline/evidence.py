@@ -39,9 +39,7 @@ def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
     end = Standing.of(parts.feed[-1])
     fit = task.fit
     return InsertionEvidence(
-        depth_m=unloaded_depth_m(
-            end.depth_m, end.axial_n, task.cell.stiffness_n_m, task.face_yields_m
-        ),
+        depth_m=unloaded_depth_m(end, task.cell.stiffness_n_m, task.face_yields_m),
         seat_force_n=end.axial_n,
         seat_slope_n_m=seat_slope_n_m(parts.feed),
         held_way_m=held_way_m(parts.feed, fit, task.cell.friction, task.cell.stiffness_n_m),

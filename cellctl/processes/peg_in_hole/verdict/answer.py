@@ -5,8 +5,8 @@ with all that is left of the way of its push. So a push on which nothing is felt
 drawn would have been met, and goes on only after a greater press along the axis was felt.
 """
 
-from cellctl.cell.contact_motion.motions import Condition, ContactMotions, ContactSample
-from cellctl.processes.peg_in_hole.search.conditions import LostSupport
+from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample
+from cellctl.processes.peg_in_hole.search.conditions import LostSupport, depth_m, either
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST
 
@@ -56,20 +56,12 @@ async def sensor_answers(
     def felt(sample: ContactSample) -> bool:
         return bool(abs(sample.force_n[2] - standing.force_n[2]) > least_n)
 
-    pressed = await motions.press(
-        press_n + more_n, _ANSWERS_S, _felt_or_sunk(felt, standing, sinks_m)
-    )
+    def sunk(sample: ContactSample) -> bool:
+        # With a sensor that is dead the arm would press on for all of its time.
+        return depth_m(sample) - depth_m(standing) > sinks_m
+
+    pressed = await motions.press(press_n + more_n, _ANSWERS_S, either(felt, sunk))
     # The arm comes to rest after that, maybe with a little less.
     answers = any(map(felt, pressed.samples))
     await motions.press(press_n, _ANSWERS_S, LostSupport(press_n))
     return answers
-
-
-def _felt_or_sunk(felt: Condition, standing: ContactSample, sinks_m: float) -> Condition:
-    """With a sensor that is dead the arm would press on for all of its time."""
-
-    def condition(sample: ContactSample) -> bool:
-        sunk_m = float(sample.task_position_tip_m[2] - standing.task_position_tip_m[2])
-        return felt(sample) or sunk_m > sinks_m
-
-    return condition

@@ -39,7 +39,7 @@ def test_a_sensor_is_true_until_its_fault_begins(cell: CycleCell) -> None:
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_part_that_slips_to_a_stop_has_slipped(cell: CycleCell, seed: int) -> None:
     trap = run_contact_trap(cell, TrapState.SLIPS_TO_STOP, seed)
-    assert (trap.inserted, trap.seated, trap.fault) == (False, False, "F592")
+    assert (trap.inserted, trap.seated, trap.fault) == (False, False, "F591")
     assert trap.by_curve == "not inserted"
 
 

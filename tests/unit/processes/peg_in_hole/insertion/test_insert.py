@@ -5,7 +5,13 @@ import pytest
 from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import Condition, ContactMotion, ContactSample, Ended
-from cellctl.processes.peg_in_hole.faults import HoleBlocked, NotSeated, PegJammed, PegWedged
+from cellctl.processes.peg_in_hole.faults import (
+    HoleBlocked,
+    NotSeated,
+    PegJammed,
+    PegSlipped,
+    PegWedged,
+)
 from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
 from tests.rigs.insertion.kinematic import KinematicMotions
@@ -127,6 +133,8 @@ class _Bottomless(Bore):
 class _Unfelt(Bore):
     """Goes on in small steps as long as it is let, and feels the same all the way."""
 
+    felt_n = 0.5
+
     async def feed(
         self,
         depth_m: float,
@@ -138,7 +146,7 @@ class _Unfelt(Bore):
         samples = []
         while self.position_m[2] < depth_m + past_m:
             self.position_m[2] += 0.01e-3
-            samples.append(self.felt(0.5))
+            samples.append(self.felt(self.felt_n))
             if until(samples[-1]):
                 return ContactMotion(Ended.CONDITION, tuple(samples))
         return ContactMotion(Ended.TRAVEL, tuple(samples))
@@ -150,6 +158,14 @@ def test_a_feed_that_feels_nothing_ends_no_farther_past_the_seat_than_it_may_lie
     with pytest.raises(NotSeated, match="nothing has stopped the feed at the seat"):
         fed(bore)
     assert float(bore.position_m[2]) <= 12.33e-3
+
+
+def test_a_force_that_does_not_rise_at_the_seat_is_that_of_a_part_that_slips() -> None:
+    bore = _Unfelt([], side_n=0)
+    bore.felt_n = 9.0
+    with pytest.raises(PegSlipped, match=r"the force does not rise at the seat: .* axial 9\.0 N"):
+        fed(bore)
+    assert float(bore.position_m[2]) < 12e-3
 
 
 def test_a_feed_that_nothing_stops_has_found_no_seat() -> None:
