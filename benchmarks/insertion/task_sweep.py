@@ -28,6 +28,8 @@ TRIALS, QUICK_TRIALS = 200, 5
 _SEARCH_RATIO = 1.5
 """Multiple of the search force that a 20 ms mean may reach in the search of a task that is as the
 cell is told (R3 of the study); in others the guard's limit is all that holds."""
+_STANDS_RATIO = 1.05
+"""Multiple of the guard's limit: from its trip to its standstill the arm goes on."""
 _LONGEST_S = 600.0
 _UNSOLVED_SHARE = 0.02
 """A cycle with more steps without an equilibrium says nothing about forces."""
@@ -102,11 +104,14 @@ def findings(drawn: RandomTask, outcome: CycleOutcome) -> list[str]:
 def _forces(drawn: RandomTask, outcome: CycleOutcome) -> list[str]:
     task = drawn.cell.plan.task
     limits = task.limits
-    searched_n = guard_force(task, CyclePhase.SEARCH).value
+    face_n, searched_n = (
+        _STANDS_RATIO * guard_force(task, phase).value
+        for phase in (CyclePhase.FACE, CyclePhase.SEARCH)
+    )
     if drawn.truth is Truth.AS_TOLD:
         searched_n = _SEARCH_RATIO * limits.search_n
     bounds_n = {
-        CyclePhase.FACE: guard_force(task, CyclePhase.FACE).value,
+        CyclePhase.FACE: face_n,
         CyclePhase.SEARCH: searched_n,
         CyclePhase.INSERTION: limits.insertion_n,
         CyclePhase.VERDICT: limits.insertion_n,

@@ -4,10 +4,16 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cellctl.cell.contact_motion.motions import Condition, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import Condition, ContactSample, Ended, Vector
 from cellctl.force.contact.streamed.path import PathFollower
 
 End = Callable[[ContactSample], Ended | None]
+
+_SOFTER = 2.0
+"""How many times softer than along the hole an arm may be across it."""
+_REPEATABLE_M = 0.1e-3
+_LEAST_N, _SIGMAS = 1.0, 8.0
+"""A force that grows by less may do so by noise, or while the arm comes to rest."""
 
 
 def first_of(*ends: End) -> End:
@@ -29,10 +35,37 @@ def when(until: Condition | None) -> End:
     return lambda sample: Ended.CONDITION if until is not None and until(sample) else None
 
 
-def force_above(limit_n: float) -> End:
-    """The motion ends when the force on the peg, in any direction, is greater than this."""
+class SomethingMet:
+    """A motion in the free ends when the force on the peg, in any direction, is above a limit.
 
-    def end(sample: ContactSample) -> Ended | None:
-        return Ended.FORCE if float(np.linalg.norm(sample.force_n)) > limit_n else None
+    Where it begins in contact, that force has to go on the way by which arm and contact have
+    yielded to it, and may not grow meanwhile.
+    """
 
-    return end
+    def __init__(self, limit_n: float, stiffness_n_m: float) -> None:
+        self._limit_n, self._stiffness_n_m = limit_n, stiffness_n_m
+        self._leaves: ContactSample | None = None
+        self._left = False
+
+    def __call__(self, sample: ContactSample) -> Ended | None:
+        """``FORCE`` once something is met."""
+        force_n = _size(sample.force_n)
+        if force_n <= self._limit_n:
+            self._left = True
+            return None
+        if self._left:
+            return Ended.FORCE
+        begin = self._leaves = self._leaves or sample
+        grown_n = force_n - _size(begin.force_n)
+        way_m = _size(sample.task_position_tip_m - begin.task_position_tip_m)
+        yields_m = _SOFTER * _size(begin.force_n) / self._stiffness_n_m
+        stays = way_m > yields_m + _REPEATABLE_M
+        return (
+            Ended.FORCE
+            if stays or grown_n > max(_LEAST_N, _SIGMAS * sample.force_sigma_n)
+            else None
+        )
+
+
+def _size(vector: Vector) -> float:
+    return float(np.linalg.norm(vector))

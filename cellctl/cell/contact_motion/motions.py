@@ -80,7 +80,10 @@ class ContactMotions(ABC):
     async def move_free(
         self, task_position_tip_m: Vector, task_rotation_tip_rad: Vector, speed_m_s: float
     ) -> ContactMotion:
-        """Straight to a pose; a contact above the touch force on the way ends it by ``FORCE``."""
+        """Straight to a pose; a contact above the touch force on the way ends it by ``FORCE``.
+
+        So does one in which it begins and that it does not leave.
+        """
 
     @abstractmethod
     async def touch(
@@ -153,7 +156,8 @@ class ContactMotions(ABC):
         """Go into the hole to a depth below the face, giving way sideways and in attitude.
 
         The feed slows with the axial force and backs off above 60 % of the limit. ``past_m``: it
-        goes on past the depth by so much, slowly as long as nothing is felt.
+        goes on past the depth by so much, slowly as long as nothing is felt. One that begins deeper
+        ends there.
         """
 
     @abstractmethod

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
-from cellctl.cell.contact_motion.ends import End, arrived, first_of, force_above, when
+from cellctl.cell.contact_motion.ends import End, SomethingMet, arrived, first_of, when
 from cellctl.cell.contact_motion.giving_way import (
     TILT_X,
     TILT_Y,
@@ -74,7 +74,7 @@ class StreamedContact(ContactMotions):
         target = np.concatenate([task_position_tip_m, task_rotation_tip_rad])
         points, lengths = straight(self._loop.tip_command, target, _TURN_LEVER_M)
         path = self._path(points, lengths)
-        touched = force_above(self._settings.press_n)
+        met = SomethingMet(self._settings.press_n, self._settings.figures.stiffness_n_m)
         way = target - self._loop.tip_command
         # The flange makes both at once, so that the steps of both add up.
         shift_s = float(np.linalg.norm(way[:3])) / fastest_m_s(self._loop)
@@ -87,7 +87,7 @@ class StreamedContact(ContactMotions):
             MotionKind.MOVE_FREE,
             path,
             lambda _sample: speed,
-            first_of(touched, arrived(path)),
+            first_of(met, arrived(path)),
             speed,
         )
         if moved.ended is Ended.TRAVEL:
@@ -208,7 +208,7 @@ class StreamedContact(ContactMotions):
         """See ``ContactMotions``; ends by ``FORCE`` when the force has stopped the feed."""
         self._pressed_n = 0.0
         target = self._loop.tip_command.copy()
-        target[2] = depth_m + past_m
+        target[2] = max(target[2], depth_m + past_m)
         path = self._path(*straight(self._loop.tip_command, target, _TURN_LEVER_M))
         feed = StalledFeed(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
         press = giving_way(

@@ -174,9 +174,10 @@ class KinematicMotions(ContactMotions):
         until: Condition | None = None,
         past_m: float = 0.0,
     ) -> ContactMotion:
-        rests_m, depth_m = self._depth_m(), depth_m + past_m
-        if rests_m > self.task.fit.entry_depth_m:
+        depth_m = max(depth_m + past_m, float(self.position_m[2]))
+        if self._between_walls or self._depth_m() > self.task.fit.entry_depth_m:
             self._centre()
+        rests_m = self._depth_m()
         # Against a stop the force rises with the way of the arm.
         yields_m = force_limit_n / self.task.cell.stiffness_n_m
         samples: list[ContactSample] = []

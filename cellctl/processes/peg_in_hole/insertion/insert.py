@@ -21,6 +21,7 @@ from cellctl.processes.peg_in_hole.faults import (
     PegNotInserted,
     PegSlipped,
     PegWedged,
+    SensorDead,
 )
 from cellctl.processes.peg_in_hole.insertion.felt import (
     Standing,
@@ -35,6 +36,7 @@ from cellctl.processes.peg_in_hole.insertion.resistance import held_way_m, unrub
 from cellctl.processes.peg_in_hole.insertion.with_feed import ForceWithFeed, with_feed_n
 from cellctl.processes.peg_in_hole.insertion.zero_jump import ZeroJump, dropped_n
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
+from cellctl.processes.peg_in_hole.verdict.lateral import walls_answer
 
 _MOST_RECOVERIES = 3
 _RECOVERY_S = 15.0
@@ -43,6 +45,9 @@ _GAIN_M = 0.2e-3
 """Depth that a recovery has to win."""
 _SAME_DEPTH_M = 0.1e-3
 """Two feeds that end no farther apart than this have met the same thing."""
+_ASKED_BEFORE_M = 0.5e-3
+"""How far before its seat the sensor is asked whether it still answers: more than by which the seat
+may lie higher than drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +76,8 @@ async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float
 
     The touches of the face had yielded by ``face_yields_m``, so that frame A lies deeper than the
     face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with
-    the figures where the peg stands, ``NotSeated`` where no seat stops it, and
-    ``ForceActsWithFeed`` or ``ForceDropped``.
+    the figures where the peg stands, ``NotSeated`` where no seat stops it,
+    ``ForceActsWithFeed`` or ``ForceDropped``, and ``SensorDead`` where it does not feel the walls.
     """
     if task.fit.keys is not None:
         await find_keyway(motions, task, task.fit.keys)
@@ -104,12 +109,29 @@ class _Feed:
     def __init__(self, motions: ContactMotions, task: SearchTask, face_yields_m: float) -> None:
         self._motions, self._task, self._face_yields_m = motions, task, face_yields_m
         self._samples: list[ContactSample] = []
+        # With a sensor that has died, the way by which the seat may lie deeper would be more force
+        # on a stiff arm than the insertion may take.
+        dead_n = task.cell.stiffness_n_m * SEAT_TOLERANCE_M
+        self._to_be_asked = dead_n > task.limits.insertion_n
+        """Whether the sensor has to show before the seat that it still answers."""
 
     async def on(self) -> ContactMotion:
         """A little beyond the seat, so that only a force ends it there."""
+        seat_m, limits, cell = self._task.fit.depth_m, self._task.limits, self._task.cell
+        past_m = limits.insertion_n / cell.stiffness_n_m + SEAT_TOLERANCE_M
+        if not self._to_be_asked:
+            return await self._to(seat_m, past_m)
+        before = await self._to(seat_m - _ASKED_BEFORE_M)
+        if before.ended is not Ended.TRAVEL:
+            return before
+        self._to_be_asked = False
+        if not await walls_answer(self._motions, self._task):
+            raise SensorDead(f"no wall was felt before the seat: {Standing.of(before.last)}")
+        rest = await self._to(seat_m, past_m)
+        return ContactMotion(rest.ended, (*before.samples, *rest.samples))
+
+    async def _to(self, depth_m: float, past_m: float = 0.0) -> ContactMotion:
         limit_n = self._task.limits.insertion_n
-        yields_m = limit_n / self._task.cell.stiffness_n_m
-        past_m = yields_m + SEAT_TOLERANCE_M
         watched, jump = ForceWithFeed(self._task.cell), ZeroJump(self._task)
         past_seat = PastSeat(self._task, self._face_yields_m)
         ended_by: list[bool] = []
@@ -119,7 +141,7 @@ class _Feed:
             ended_by[:] = (watched.take(sample), jump.take(sample), past_seat.take(sample))
             return any(ended_by)
 
-        motion = await self._motions.feed(self._task.fit.depth_m, limit_n, wrong, past_m)
+        motion = await self._motions.feed(depth_m, limit_n, wrong, past_m)
         self._samples += motion.samples
         if motion.ended is Ended.CONDITION:
             raise self._fault(Standing.of(motion.last), ended_by, watched, jump, past_seat)

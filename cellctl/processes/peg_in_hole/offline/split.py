@@ -3,7 +3,7 @@
 By the motions where the file names them, else by what was felt.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby, takewhile
 
@@ -23,7 +23,7 @@ class CurveParts:
     """The parts of one curve; a part that is not in it is None or empty."""
 
     feed: Samples
-    """The last one, to the seat or to where the peg stands."""
+    """The last one, to the seat or to where the peg stands, as one where the sensor was asked."""
     way_in: Samples
     """In which no force may act with the feed: all that is known of it, back to the chamfers."""
     begun: ContactSample | None
@@ -48,7 +48,7 @@ def by_motions(curve: PegCurve, task: JudgedTask) -> CurveParts | None:
     feeds = [index for index, (kind, _) in enumerate(motions) if kind is MotionKind.FEED]
     if not feeds:
         return None
-    feed = motions[feeds[-1]][1]
+    feed = _insertion(motions, feeds[-1])
     # Drawing the part out ends what the verdict rests on.
     after = list(
         takewhile(lambda motion: motion[0] is not MotionKind.BACK_OUT, motions[feeds[-1] + 1 :])
@@ -65,6 +65,15 @@ def by_motions(curve: PegCurve, task: JudgedTask) -> CurveParts | None:
     begun, last = (pressed[0], pressed[-1]) if pressed else (None, None)
     # Every second turn goes back.
     return CurveParts(feed, feed, begun, pushes, last, tuple(turned[::2]), pulled)
+
+
+def _insertion(motions: Sequence[tuple[MotionKind, Samples]], last: int) -> Samples:
+    """The last feed, with the one before it where only a question to the sensor lies between."""
+    before = last - 1
+    while before >= 0 and motions[before][0] is MotionKind.TOUCH:
+        before -= 1
+    asked = 0 <= before < last - 1 and motions[before][0] is MotionKind.FEED
+    return (motions[before][1] if asked else ()) + motions[last][1]
 
 
 def _side(samples: Samples) -> Side | None:

@@ -20,7 +20,8 @@ _ANSWERS_S = 1.0
 _REPEATABLE_M = 20e-6
 
 
-def _least_change_n(cell: JudgedCell) -> float:
+def least_change_n(cell: JudgedCell) -> float:
+    """A change of a force by more is neither friction nor noise."""
     return max(_LEAST_CHANGE_N, _LEAST_SIGMAS * cell.force_sigma_n)
 
 
@@ -28,7 +29,7 @@ class NothingFelt:
     """Holds where a push has gone on for a way on which a wall as drawn would have been felt."""
 
     def __init__(self, task: JudgedTask, axis: int) -> None:
-        self._axis, self._least_n = axis, _least_change_n(task.cell)
+        self._axis, self._least_n = axis, least_change_n(task.cell)
         yields_m = SOFTEST * self._least_n / task.cell.stiffness_n_m
         self._most_m = 2 * task.fit.clearance_m + MARGIN_M + yields_m
         self._changed: ContactSample | None = None
@@ -49,7 +50,7 @@ async def sensor_answers(
 
     False for a peg that nothing carries, too.
     """
-    least_n = _least_change_n(task.cell)
+    least_n = least_change_n(task.cell)
     more_n = _PRESS_MORE * least_n
     sinks_m = SOFTEST * more_n / task.cell.stiffness_n_m + _REPEATABLE_M
 

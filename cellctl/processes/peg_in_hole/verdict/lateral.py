@@ -1,4 +1,4 @@
-"""Pushes the peg to all four sides: between walls it resists, on a face it slides."""
+"""Pushes the peg to its sides: between walls it resists, on a face it slides."""
 
 from collections.abc import Mapping
 from math import isnan, nan
@@ -18,6 +18,7 @@ from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 from cellctl.processes.peg_in_hole.verdict.answer import (
     MARGIN_M,
     NothingFelt,
+    least_change_n,
     sensor_answers,
 )
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
@@ -49,13 +50,11 @@ def push_force_n(cell: JudgedCell) -> float:
 async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralCapture:
     """Push along x and back, along y and back, pressed lightly; the arm stays where it ends."""
     push_n = push_force_n(task.cell)
-    yields_m = push_n / task.cell.stiffness_n_m
     # Where nothing carries the peg it is not at its seat, which its depth tells.
     begun = (await motions.press(_PRESS_N, _SETTLE_S, LostSupport(_PRESS_N))).last
     speed_m_s = _push_speed_m_s(task, push_n)
     pushes: dict[Side, ContactMotion | None] = {}
-    # The second push begins at the first contact and so has to undo what yielded there.
-    way_m = 2 * task.fit.clearance_m + 2 * SOFTEST * yields_m + 2 * MARGIN_M
+    way_m = _way_between_walls_m(task, push_n)
     for side in SIDES:
         push = await motions.touch(
             _along(side), way_m, push_n, speed_m_s, NothingFelt(task, side[0])
@@ -69,6 +68,33 @@ async def measure_capture(motions: ContactMotions, task: SearchTask) -> LateralC
             push = ContactMotion(rest.ended, (*push.samples, *rest.samples))
         pushes[side] = push
     return capture_of(begun, pushes, task)
+
+
+async def walls_answer(motions: ContactMotions, task: SearchTask) -> bool:
+    """Whether the sensor feels the walls between which a peg is pushed to and fro along x.
+
+    False also where they stand farther apart than drawn.
+    """
+    least_n = least_change_n(task.cell)
+    push_n = max(_LEAST_PUSH_N, 2 * least_n)
+    ends: dict[Side, ContactMotion | None] = {}
+    for side in ((0, 1.0), (0, -1.0)):
+        ends[side] = push = await motions.touch(
+            _along(side),
+            _way_between_walls_m(task, push_n),
+            push_n,
+            _push_speed_m_s(task, push_n),
+            NothingFelt(task, side[0]),
+        )
+        if push.ended is not Ended.FORCE:
+            return False
+    return _force_change_n(ends, 0) > least_n
+
+
+def _way_between_walls_m(task: SearchTask, push_n: float) -> float:
+    # The second push begins at the first contact and so has to undo what yielded there.
+    yields_m = SOFTEST * push_n / task.cell.stiffness_n_m
+    return 2 * task.fit.clearance_m + 2 * yields_m + 2 * MARGIN_M
 
 
 def _along(side: Side) -> Vector:

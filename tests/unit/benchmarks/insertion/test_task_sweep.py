@@ -108,7 +108,7 @@ def _is_refused(seed: int) -> bool:
 
 @pytest.mark.long
 @pytest.mark.timeout(1200)
-@pytest.mark.parametrize("seed", [3, 7, 8, 11, 16, 24, 30])
+@pytest.mark.parametrize("seed", [3, 7, 8, 11, 16, 24, 30, 2003, 2011, 2053])
 def test_nothing_that_must_not_happen_does(seed: int) -> None:
     """Among them those in which it once did."""
     assert sweep_task(seed).found == ()

@@ -1,4 +1,5 @@
 import asyncio
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,8 +10,10 @@ from cellctl.processes.peg_in_hole.faults import (
     HoleBlocked,
     NotSeated,
     PegJammed,
+    PegNotInserted,
     PegSlipped,
     PegWedged,
+    SensorDead,
 )
 from cellctl.processes.peg_in_hole.insertion.felt import Standing, seat_slope_n_m
 from cellctl.processes.peg_in_hole.insertion.insert import Fed, insert
@@ -172,6 +175,44 @@ def test_a_feed_that_nothing_stops_has_found_no_seat() -> None:
     bore = _Bottomless([], side_n=0)
     with pytest.raises(NotSeated, match=r"nothing has stopped the feed: depth 12\.33 mm"):
         asyncio.run(insert(bore, bore.task, 0.0))
+
+
+class _Dead(_Unfelt):
+    """Nothing is felt of a push to a side either."""
+
+    async def touch(
+        self,
+        direction: Array,
+        travel_m: float,
+        force_n: float,
+        speed_m_s: float | None = None,
+        until: Condition | None = None,
+    ) -> ContactMotion:
+        return ContactMotion(Ended.CONDITION, (self.felt(self.felt_n),))
+
+
+@pytest.mark.parametrize(
+    ("insertion_n", "fault", "deepest_mm"), [(29.0, SensorDead, 11.51), (31.0, NotSeated, 12.33)]
+)
+def test_on_a_stiff_arm_a_dead_sensor_is_found_before_the_seat(
+    insertion_n: float, fault: type[PegNotInserted], deepest_mm: float
+) -> None:
+    """The 0.3 mm by which a seat may lie deeper are 30 N at 1e5 N/m."""
+    bore = _Dead([], side_n=0)
+    cell = replace(bore.task.cell, stiffness_n_m=1e5)
+    task = replace(bore.task, cell=cell, limits=replace(bore.task.limits, insertion_n=insertion_n))
+    with pytest.raises(fault):
+        asyncio.run(insert(bore, task, 0.0))
+    assert float(bore.position_m[2]) * 1e3 <= deepest_mm + 1e-9
+
+
+def test_a_sensor_is_asked_once_and_both_feeds_are_one_insertion() -> None:
+    bore = Bore([4.0], side_n=10)
+    found = fed(bore)
+    assert bore.touches == 2  # to and fro
+    depths_mm = [sample.task_position_tip_m[2] * 1e3 for sample in found.samples]
+    assert any(11.4 < depth_mm < 11.6 for depth_mm in depths_mm)
+    assert depths_mm[-1] > 12.0
 
 
 def test_a_chip_that_gives_way_is_passed() -> None:

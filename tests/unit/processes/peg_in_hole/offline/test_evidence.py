@@ -77,3 +77,22 @@ def test_a_peg_that_its_walls_hold_as_it_is_drawn_back_shows_no_force_with_the_f
     evidence = evidence_of(parse_curve(as_csv(whole)), TaskOfCurve.of(PART))
     assert evidence.with_feed_n is not None
     assert evidence.with_feed_n < 1.0
+
+
+def test_a_feed_in_which_the_sensor_was_asked_counts_from_its_beginning() -> None:
+    """What held the part back before the question tells of slip."""
+    rows, kinds = inserted(PUSHED)
+    depths_mm = rows[:, NAMES.index("depth_mm")]
+    held = (depths_mm > 5.0) & (depths_mm < 9.0)
+    rows[held, _FZ] -= 6.0
+    asked = int(np.argmax(depths_mm > 11.5))
+    question = np.repeat(rows[asked : asked + 1], 10, axis=0)
+    question[:, NAMES.index("x_mm")] += np.linspace(0.0, 0.05, 10)
+    whole = np.concatenate([rows[:asked], question, rows[asked:]])
+    whole[:, 0] = 0.01 * np.arange(len(whole))
+    first = kinds[:asked]
+    named = [*first, *[(first[-1][0] + 1, "touch")] * 10]
+    named += [(motion + 2, kind) for motion, kind in kinds[asked:]]
+    evidence = evidence_of(parse_curve(as_csv(whole, named)), TaskOfCurve.of(PART))
+    assert evidence.held_way_m is not None
+    assert evidence.held_way_m * 1e3 == pytest.approx(4.0, abs=0.2)

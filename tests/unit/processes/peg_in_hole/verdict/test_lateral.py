@@ -14,6 +14,7 @@ from cellctl.processes.peg_in_hole.verdict.lateral import (
     capture_of,
     measure_capture,
     push_force_n,
+    walls_answer,
 )
 from tests.rigs.insertion.traps import PegState, StandingPeg
 from tests.unit.processes.peg_in_hole.tasks import pin
@@ -79,6 +80,16 @@ def test_a_hole_that_is_wider_is_pushed_to_its_walls() -> None:
     most_m = 2 * motions.task.fit.clearance_m + 0.1e-3
     assert found.play_x_m is not None
     assert found.play_x_m > most_m
+
+
+@pytest.mark.parametrize(
+    ("state", "answers"),
+    [(PegState.INSERTED, True), (PegState.WRONG_HOLE, False), (PegState.FROZEN, False)],
+)
+def test_walls_answer_a_sensor_that_lives(state: PegState, answers: bool) -> None:
+    motions = _Stepping(state)
+    assert asyncio.run(walls_answer(motions, motions.task)) is answers
+    assert max(motions.ways_m) < 2 * motions.task.fit.clearance_m + 0.2e-3
 
 
 def _speeds(task: SearchTask) -> list[float]:
