@@ -19,6 +19,8 @@ _SWEEP_RATIO = 1.5
 _BEGUN_M = 0.2e-3
 """A drop by which the keys are seen to have begun to enter."""
 _SETTLE_S = 1.0
+_UNTWISTED_N_M = 0.1
+"""Less about the axis than what the verdict takes for a key that resists, by far."""
 _THROUGH_RATIO = 0.5
 """How much further than the ends of the keys the plug must go, over the depth of the keys."""
 _NEAR_M = 0.5e-3
@@ -52,6 +54,8 @@ async def find_keyway(motions: ContactMotions, task: SearchTask, keys: KeyGeomet
         )
         # Keys that have dropped leave nothing that carries the plug: it would sink on and on.
         await motions.comply(_HOLD_N, _SETTLE_S, LostSupport(_HOLD_N))
+        # The turn ends against a flank of the keyways, and the feed to the seat is stiff about z.
+        await motions.comply(0.0, _SETTLE_S, _untwisted)
         motion = await motions.feed(through_m, task.limits.search_n)
     if motion.ended is Ended.FORCE and _on_keys(motion.last, task, keys):
         raise KeywayNotFound(
@@ -64,6 +68,10 @@ def _sweep_speed_rad_s(task: SearchTask, keys: KeyGeometry) -> float:
     """A speed so low that the plug drops visibly while the keys cross half of their window."""
     drop_m_s = _HOLD_N / (_DAMPING * task.cell.loop_n_s_m)
     return min(_FASTEST_RAD_S, keys.window_rad * drop_m_s / _BEGUN_M)
+
+
+def _untwisted(sample: ContactSample) -> bool:
+    return abs(float(sample.moment_n_m[2])) < _UNTWISTED_N_M
 
 
 def _dropped_from(depth_m: float, task: SearchTask) -> Condition:

@@ -46,7 +46,7 @@ ANGLES_RAD = np.radians([0.0, 60.0, 120.0, 240.0])
 prove it."""
 _OF_PLANE, _PROOF = [0, 2, 3], 1
 _STEP_RAD = radians(30)
-"""Angle of one step of the way round a plug: chords so short stay near the circle."""
+"""Angle of one step of the way round a plug: so short, its corners stay near the circle."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,7 +89,7 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     """
     radius_m, height_uncertainty_m = plan.radius_m, plan.height_uncertainty_m
     touching = _Touching(motions, task, plan.datum_depth_m, height_uncertainty_m)
-    places = radius_m * np.stack([np.cos(ANGLES_RAD), np.sin(ANGLES_RAD)], axis=1)
+    places = np.stack([_on_circle(float(angle_rad), radius_m) for angle_rad in ANGLES_RAD])
     # The arm may press harder where nothing is known yet; vision's height may be wrong by much.
     fast_m_s = touch_speed_m_s(
         task.cell.stiffness_n_m, task.cell.dead_time_s, task.limits.insertion_n / 2
@@ -127,28 +127,35 @@ class _Touching:
         """From over the search centre to a place (2,), at depth ``from_m``."""
         over_m = self._over_m(from_m)
         await self.motions.back_out(-over_m)
-        await self.motions.move_free(np.array([*place_m, over_m]), _UPRIGHT, _FREE_M_S)
+        await self._over(place_m, over_m)
         if over_m < from_m:
-            await self.motions.move_free(np.array([*place_m, from_m]), _UPRIGHT, _FREE_M_S)
+            await self._over(place_m, from_m)
 
     async def over_next(self, angle_rad: float, radius_m: float, from_m: float) -> None:
         """From the last place to the next one; round a plug that stands in the way."""
         begun = await self.motions.back_out(-from_m)
-        steps, here_rad = 1, 0.0
         if self.datum_depth_m > 0:
             x_m, y_m, _ = begun.last.task_position_tip_m
             here_rad = float(np.arctan2(y_m, x_m)) % (2 * np.pi)
-            steps = max(1, round((angle_rad - here_rad) / _STEP_RAD))
-        for at_rad in np.linspace(here_rad, angle_rad, steps + 1)[1:]:
-            place_m = [radius_m * np.cos(at_rad), radius_m * np.sin(at_rad), from_m]
-            await self.motions.move_free(np.array(place_m), _UPRIGHT, _FREE_M_S)
+            for place_m in _round_the_plug(here_rad, angle_rad, radius_m):
+                await self._over(place_m, from_m)
+        await self._over(_on_circle(angle_rad, radius_m), from_m)
+
+    async def _over(self, place_m: Array, over_m: float) -> None:
+        target = np.array([*place_m, over_m])
+        moved = await self.motions.move_free(target, _UPRIGHT, _FREE_M_S)
+        if moved.ended is Ended.FORCE:
+            # A touch from here would be one of what stands in the way.
+            x_mm, y_mm, depth_mm = moved.last.task_position_tip_m * 1e3
+            raise FaceAbsent(
+                f"something stands in the way to it at x {x_mm:.1f}, y {y_mm:.1f}, "
+                f"depth {depth_mm:.1f} mm"
+            )
 
     async def leave(self, place_m: Array, from_m: float) -> None:
         """Up from the last place (2,) by ``from_m``, straight, clear of a plug."""
         await self.motions.back_out(-from_m)
-        await self.motions.move_free(
-            np.array([*place_m, self._over_m(from_m)]), _UPRIGHT, _FREE_M_S
-        )
+        await self._over(place_m, self._over_m(from_m))
 
     def _over_m(self, from_m: float) -> float:
         """High enough for a plug that stands proud of what is touched."""
@@ -165,6 +172,19 @@ class _Touching:
             _require_no_slip(touched.samples, self.task, self.task.limits.search_n, place)
             raise FaceAbsent(f"no contact at {place} within {travel_m * 1e3:.1f} mm")
         return touched.last
+
+
+def _on_circle(angle_rad: float, radius_m: float) -> Array:
+    return radius_m * np.array([np.cos(angle_rad), np.sin(angle_rad)])
+
+
+def _round_the_plug(from_rad: float, to_rad: float, radius_m: float) -> list[Array]:
+    """Corners (2,) of the way from one place on a circle to another, which it touches and never
+    cuts."""
+    steps = max(1, round((to_rad - from_rad) / _STEP_RAD))
+    half_rad = (to_rad - from_rad) / (2 * steps)
+    corners_rad = from_rad + half_rad * (2 * np.arange(steps) + 1)
+    return [_on_circle(float(at), radius_m / float(np.cos(half_rad))) for at in corners_rad]
 
 
 def _require_no_slip(

@@ -49,10 +49,27 @@ class KeyedMotions(KinematicMotions):
             self.moment_n_m = 1.0 if in_keyway and not self._free() else 0.0
             if not in_keyway and self._free():
                 self.position_m[2] = KEYS.depth_m + 0.3e-3
+                self.moment_n_m = 0.9
             sample = replace(self._sample(5.0), moment_n_m=np.array([0.0, 0.0, self.moment_n_m]))
             if until is not None and until(sample):
                 return ContactMotion(Ended.CONDITION, (sample,))
         return ContactMotion(Ended.TRAVEL, (sample,))
+
+    async def comply(
+        self,
+        press_n: float,
+        hold_s: float,
+        until: Condition | None = None,
+        *,
+        turns: bool = True,
+    ) -> ContactMotion:
+        """Nothing carries keys that have dropped; without a press the plug turns free."""
+        if press_n == 0.0 and turns:
+            self.moment_n_m = 0.0
+        moment_n_m = np.array([0.0, 0.0, self.moment_n_m])
+        sample = replace(self._sample(0.0), moment_n_m=moment_n_m)
+        ended = Ended.CONDITION if until is not None and until(sample) else Ended.TIME
+        return ContactMotion(ended, (sample,))
 
     async def press(
         self, force_n: float, hold_s: float, until: Condition | None = None
@@ -81,6 +98,7 @@ def test_the_keys_drop_and_then_hold(keyway_deg: float) -> None:
     motions = KeyedMotions(TASK, float(np.radians(keyway_deg)))
     asyncio.run(find_keyway(motions, TASK, KEYS))
     assert motions.position_m[2] == pytest.approx(1.5 * KEYS.depth_m)
+    assert motions.moment_n_m == 0.0  # its flank of the keyway is not pressed on all the way
     assert asyncio.run(directions_that_resist_a_turn(motions, KEYS)) == 2
 
 

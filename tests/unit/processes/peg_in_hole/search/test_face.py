@@ -1,5 +1,6 @@
 import asyncio
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -19,6 +20,8 @@ from tests.unit.processes.peg_in_hole.tasks import pin
 
 FAR = np.array([100e-3, 100e-3])
 """The hole is nowhere near the touches."""
+PANEL_M = 5e-3
+"""Depth of a panel below the face of a plug."""
 
 
 def touched(motions: KinematicMotions) -> TouchedFace:
@@ -63,6 +66,48 @@ def test_no_face_is_a_fault() -> None:
     motions = NothingThere(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
     with pytest.raises(FaceAbsent, match=r"no contact at x 8\.0, y 0\.0 mm"):
         touched(motions)
+
+
+class Ways(KinematicMotions):
+    """Touches a panel round a plug; keeps the way of the free motions, and may be stopped on one
+    of them."""
+
+    def __init__(self, stopped_at: int | None = None) -> None:
+        super().__init__(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
+        self.places_m: list[NDArray[np.float64]] = []
+        self._stopped_at = stopped_at
+
+    def _depth_m(self) -> float:
+        return PANEL_M
+
+    async def move_free(
+        self,
+        task_position_tip_m: NDArray[np.float64],
+        task_rotation_tip_rad: NDArray[np.float64],
+        speed_m_s: float,
+    ) -> ContactMotion:
+        moved = await super().move_free(task_position_tip_m, task_rotation_tip_rad, speed_m_s)
+        self.places_m.append(moved.last.task_position_tip_m[:2])
+        stopped = len(self.places_m) == self._stopped_at
+        return ContactMotion(Ended.FORCE if stopped else moved.ended, moved.samples)
+
+
+def test_the_way_round_a_plug_never_cuts_the_circle_of_the_touches() -> None:
+    ways, radius_m = Ways(), 8e-3
+    asyncio.run(touch_face(ways, ways.task, FacePlan(radius_m, 3e-3, PANEL_M)))
+    assert len(ways.places_m) > 8
+    for begin_m, end_m in pairwise(ways.places_m):
+        between_m = np.linspace(begin_m, end_m, 50)
+        assert np.hypot(*between_m.T).min() > radius_m - 1e-9
+        assert np.hypot(*between_m.T).max() < 1.05 * radius_m
+
+
+@pytest.mark.parametrize("stopped_at", [1, 2, 4])
+def test_what_stands_in_the_way_to_the_face_is_a_fault(stopped_at: int) -> None:
+    ways = Ways(stopped_at)
+    with pytest.raises(FaceAbsent, match=r"something stands in the way to it at x -?\d"):
+        asyncio.run(touch_face(ways, ways.task, FacePlan(8e-3, 3e-3, PANEL_M)))
+    assert len(ways.places_m) == stopped_at
 
 
 class GivesWay(KinematicMotions):
