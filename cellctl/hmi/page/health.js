@@ -47,7 +47,7 @@ export function update(root) {
   const s = cell.snapshot;
   const place = root.querySelector("#links");
   if (!s || !place) return;
-  const rows = Object.entries(s.links).map(([name, problem]) => [name, problem ? h("span", { class: "bad" }, `■ ${spoken(problem)}`) : t("well"), ""]);
+  const rows = Object.entries(s.links).map(([name, problem]) => [name, problem ? h("span", { class: "bad" }, `■ ${spoken(problem)}`) : t("answers"), ""]);
   for (const force of s.forces) rows.push([force.sensor, t("sample_age"), num(`${shown(force.age_s === null ? null : force.age_s * 1000, 0)} ms`)]);
   rows.push([t("line_plc"), t(s.line_alive ? "alive" : "not_there"), ""]);
   rows.push([t("this_page"), t("sample_age"), num(`${shown(ageS() * 1000, 0)} ms`)]);

@@ -154,3 +154,15 @@ def test_the_figures_of_a_calibration_over_the_years(screen: Screen) -> None:
     expect(tab.locator("#trend thead")).to_contain_text("2025-01-02")
     tab.click("text=All calibrations")
     expect(tab.locator("#calibrations")).to_be_visible()
+
+
+def test_health_says_no_more_of_a_device_than_that_it_answers(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    lost = alarm(205, "ends a motion without a reason")
+    paper.snapshot = snapshot(state="ABORTED", state_requested="ABORTED", alarms=[lost])
+    screen.tab.goto(f"{screen.url}#health")
+    state = screen.tab.locator("#links tr", has_text="robots.main").locator("td").nth(1)
+    for said in ("answers", "有应答"):
+        expect(state).to_have_text(said)
+        screen.tab.click("#language")
