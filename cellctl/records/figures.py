@@ -31,8 +31,11 @@ class Limit:
 
 NO_LIMIT = Limit()
 KNOWN_TO = "_known_to"
-"""Ends the key of the expanded uncertainty of a figure whose limit is not narrowed by it."""
+"""Ends the key of the expanded uncertainty of a figure whose limit is the threshold at which a
+correction ends. The correction looks itself at how well the value is known."""
 NOT_DECIDED = "not decided"
+WITHIN_THRESHOLD = "within threshold, as measured"
+"""Said in place of a verdict: such a threshold is no requirement on the part."""
 
 
 def is_undecided(value: float | None, limit: Limit, expanded: float | None) -> bool:
@@ -59,12 +62,8 @@ def on_pages(figure: Figure) -> Figure:
 def verdicts(figures: Mapping[str, Figure]) -> Mapping[str, str]:
     """The verdict on each figure with a limit, in words, by their keys."""
     return {
-        key: NOT_DECIDED
-        if is_undecided(
-            entry.value,
-            Limit(entry.lower, entry.upper),
-            known.value if (known := figures.get(f"{key}{KNOWN_TO}")) is not None else None,
-        )
+        key: WITHIN_THRESHOLD
+        if entry.verdict is Verdict.PASS and f"{key}{KNOWN_TO}" in figures
         else str(entry.verdict)
         for key, entry in figures.items()
         if entry.verdict is not None

@@ -32,7 +32,7 @@ def test_figures_have_the_verdicts_that_report_and_terminal_show(store: RunStore
     )
     told = asyncio.run(ArchiveReader(store.path).run(run))
     assert {one["key"]: one["verdict"] for one in told["figures"]} == {
-        "angle_error": "not decided",
+        "angle_error": "within threshold, as measured",
         f"angle_error{KNOWN_TO}": None,
         "peak_force": "fail",
     }

@@ -176,6 +176,7 @@ def _before_mating(record: RunRecord) -> Iterator[Requirement]:
                     required=limit,
                     verdict=limit.judge(component.value),
                     expanded=expanded(component),
+                    threshold=True,
                     phase=None if worst is None else worst.phase,
                     stands_for=key,
                 )

@@ -25,6 +25,9 @@ class Requirement:
     was evaluated, and the value is judged by its limit alone."""
     accepted: Limit = NO_LIMIT
     """The limit less the expanded uncertainty, where that decides (JCGM 106, 8.3)."""
+    threshold: bool = False
+    """Whether the limit only ends a correction: the value as measured is compared with it, and
+    nothing is decided about the part."""
     phase: int | None = None
     """Number of the phase in which the value was found."""
     figure: str = ""

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.records.entered.gauges import gauge_limits, judge_gauge
 from cellctl.records.entries import RunRecord, Verdict
-from cellctl.records.figures import NO_LIMIT, NOT_DECIDED, Limit, is_undecided
+from cellctl.records.figures import NO_LIMIT, NOT_DECIDED, WITHIN_THRESHOLD, Limit, is_undecided
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
@@ -34,6 +34,8 @@ _LEGEND = (
     "it (JCGM 106, guarded acceptance). "
     "A row without an accepted range is judged by the required one alone, and not decided where "
     "its value lies within that by less than U (ISO 14253-1). "
+    "A threshold at which a correction ends is no requirement on the part: the value as measured "
+    "is compared with it. "
     f"Where U is {NOT_STATED}, none was evaluated: the value as measured is compared with the "
     "limit (JCGM 106, 8.2, simple acceptance), and the verdict does not say how likely the true "
     "value lies beyond it. Plug gauges are optional and entered by hand after a run; one that "
@@ -42,6 +44,10 @@ _LEGEND = (
 _VERDICTS = {
     Verdict.PASS: ("✓ conforms", RowMark.GOOD),
     Verdict.FAIL: ("✗ does not conform", RowMark.BAD),
+}
+_OF_THRESHOLDS = {
+    Verdict.PASS: (WITHIN_THRESHOLD, RowMark.NONE),
+    Verdict.FAIL: ("✗ beyond threshold", RowMark.BAD),
 }
 
 
@@ -107,6 +113,8 @@ def _rounded(value: float | None, unit: str, places: int | None) -> str:
 def _verdict(entry: Requirement) -> tuple[str, RowMark]:
     if entry.verdict is None:
         return ("optional, not entered" if entry.value is None else "no limit known"), RowMark.NONE
+    if entry.threshold:
+        return _OF_THRESHOLDS[entry.verdict]
     if entry.accepted == NO_LIMIT and is_undecided(entry.value, entry.required, entry.expanded):
         return f"? {NOT_DECIDED}: {_too_wide(entry)}", RowMark.NONE
     if entry.value is None and entry.verdict is Verdict.FAIL:

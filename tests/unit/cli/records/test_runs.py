@@ -90,9 +90,7 @@ def test_one_run_in_figures(runner: CliRunner, folder: str) -> None:
     assert "gauge 5.95 mm (simulator)" in result.stdout
 
 
-def test_a_figure_that_its_uncertainty_leaves_open_is_not_called_a_pass(
-    runner: CliRunner, store: RunStore
-) -> None:
+def test_what_ends_a_correction_is_not_called_a_pass(runner: CliRunner, store: RunStore) -> None:
     run = start(store)
     store.add(
         run,
@@ -100,7 +98,7 @@ def test_a_figure_that_its_uncertainty_leaves_open_is_not_called_a_pass(
         figure(f"angle_error{KNOWN_TO}", 0.0031, "°"),
     )
     shown = runner.invoke(app, ["show", str(run), "--data-dir", str(store.path)]).stdout
-    assert re.search(r"angle error\s+0.004°\s+–\s+0.006°\s+not decided", shown)
+    assert re.search(r"angle error\s+0.004°\s+–\s+0.006°\s+within threshold, as measured", shown)
 
 
 def test_brackets_in_names_and_serial_numbers_are_shown(runner: CliRunner, store: RunStore) -> None:

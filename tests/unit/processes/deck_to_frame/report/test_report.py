@@ -237,6 +237,10 @@ def test_every_axis_limit_has_a_line_of_its_own(store: RunStore) -> None:
     everything = acceptance_table(record, acceptance(record)).blocks[0]
     assert isinstance(everything, ReportTable)
     titles = [row.cells[0].text for row in everything.rows]
+    said = {row.cells[0].text: row.cells[5].text for row in everything.rows if len(row.cells) > 1}
+    # Its U leaves open on which side of the threshold it lies; that is for the loop.
+    assert said["error rx"] == "within threshold, as measured"
+    assert said["error ry"] == "✗ beyond threshold"
     assert not any("worst" in title or title == "rotation" for title in titles), titles
     tile = next(one for one in tiles(record, ()) if one.title == "Seated: rotation")
     assert tile.passed is not None
