@@ -191,9 +191,9 @@ def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
     """Places that a template leaves to whoever commissions the cell."""
     # The daemon takes such a file, which the programs that rehearse a cell also do; whoever checks
     # it before a first start must not be told that it is good.
-    for number in left_open(read_hand_written(cell_file)):
+    for number, key in left_open(read_hand_written(cell_file)).items():
         allowed = "the value of this cell, and the mark taken away"
-        yield ConfigIssue("(mark of the template)", FILL_IN, allowed, line=number)
+        yield ConfigIssue(key, f"{FILL_IN} (mark of the template)", allowed, line=number)
 
 
 def _never_checked(cell: CellConfig) -> Iterator[str]:

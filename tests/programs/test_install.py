@@ -164,7 +164,7 @@ def test_a_whole_installation(tmp_path: Path) -> None:
         [program, "check", cell_file], capture_output=True, text=True, check=False
     )
     # The template says itself what is to be filled in, and finds its drawings beside it.
-    assert "(mark of the template) = FILL IN" in checked.stdout
+    assert "= FILL IN (mark of the template)" in checked.stdout
     assert "features" not in checked.stdout
     again = make("install", tmp_path, PYTHON=sys.executable)
     assert again.returncode == 0, again.stderr

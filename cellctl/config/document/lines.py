@@ -6,6 +6,7 @@ TOML; what is not understood here only leaves a finding without its line.
 
 import re
 from collections import Counter
+from collections.abc import Mapping
 
 _TABLE = re.compile(r"^\s*(\[\[?)\s*([^\[\]]+?)\s*\]\]?\s*(#.*)?$")
 _WORD = r"""(?:[\w-]+|"[^"]*"|'[^']*')"""
@@ -13,6 +14,8 @@ _KEY = re.compile(rf"^\s*({_WORD}(?:\s*\.\s*{_WORD})*)\s*=\s*(.*)$")
 _INLINE = re.compile(r"([\w-]+)\s*=")
 _COMMENT_OR_TEXT = re.compile(r"""("(?:[^"\\]|\\.)*"|'[^']*')|#.*$""")
 FILL_IN = "FILL IN"
+_COMMENTED_KEY = re.compile(rf"^#\s*(?={_WORD}\s*=\s)", re.MULTILINE)
+"""What stands before a key that a template offers in a comment."""
 
 
 def key_lines(text: str) -> dict[str, int]:
@@ -46,16 +49,31 @@ def line_of(key: str, lines: dict[str, int]) -> int | None:
     return None
 
 
-def left_open(text: str) -> list[int]:
-    """Lines in which a template still says FILL IN, in a comment or a value.
+def left_open(text: str) -> dict[int, str]:
+    """Lines in which a template still says FILL IN, in a comment or a value, and what each is of.
 
-    The first line of a template explains the mark and does not count as one.
+    That is the key or table of the line itself, of the next one below a comment, given or offered
+    in a comment too, or the one whose value goes on in the line. The line of a template that
+    explains the mark does not count as one.
     """
-    return [
-        number
+    first: dict[int, str] = {}
+    for key, number in key_lines(_COMMENTED_KEY.sub("", text)).items():
+        # A table is met before the device that begins with it, a key before those in its value.
+        first.setdefault(number, key)
+    return {
+        number: _of_mark(number, line, first)
         for number, line in enumerate(text.splitlines(), 1)
         if FILL_IN in line and "marked FILL IN" not in line
-    ]
+    }
+
+
+def _of_mark(number: int, line: str, first: Mapping[int, str]) -> str:
+    """Empty in a file without any key."""
+    below = [one for one in first if one >= number]
+    above = [one for one in first if one < number]
+    if number not in first and (not line.lstrip().startswith("#") or not below):
+        return first[max(above)] if above else ""
+    return first[min(below)]
 
 
 def _plain(path: str) -> str:

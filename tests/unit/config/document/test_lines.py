@@ -48,7 +48,41 @@ def test_a_missing_key_has_the_line_of_its_table() -> None:
 
 def test_marks_count_but_for_the_line_that_explains_them() -> None:
     text = "# fill in what is marked FILL IN\na = 1 # FILL IN: the port\nb = 2\n"
-    assert left_open(text) == [2]
+    assert left_open(text) == {2: "a"}
+
+
+def test_a_mark_names_what_it_is_of() -> None:
+    text = """# FILL IN: all of it
+[robots.main.settings]
+listen_host = "a"   # FILL IN
+# FILL IN: the box
+# of the flange
+low_mm = [1]
+rows = [
+  [0, 1],   # FILL IN: by the data sheet
+]
+switch = { host = "b" }   # FILL IN
+
+[[recipes]]
+# FILL IN
+name = "c"
+# FILL IN: what the drawing says.
+# tip = [[0.0, 1.0], ...]
+mass = 1
+# FILL IN: poses
+"""
+    settings = "robots.main.settings"
+    assert list(left_open(text).values()) == [
+        settings,
+        f"{settings}.listen_host",
+        f"{settings}.low_mm",
+        f"{settings}.rows",
+        f"{settings}.switch",
+        "recipes.0.name",
+        "recipes.0.tip",
+        "recipes.0.mass",
+    ]
+    assert left_open("# FILL IN") == {1: ""}
 
 
 @given(st.text(alphabet="[]{}=.#\"' \nab1", max_size=200))
