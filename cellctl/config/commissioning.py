@@ -13,6 +13,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.boxes import box_issues, box_remarks
 from cellctl.config.checks.arms.needs import ArmNeeds, arm_needs
 from cellctl.config.checks.arms.tables import table_issues, table_remarks
+from cellctl.config.checks.cameras import camera_issues, camera_remarks
 from cellctl.config.checks.cross_checks import unpermitted
 from cellctl.config.checks.plausible.arms import arm_remarks
 from cellctl.config.checks.plausible.calibration_files import calibration_file_remarks
@@ -68,6 +69,7 @@ def _implausible(cell: CellConfig, path: Path, found: list[ConfigIssue]) -> Iter
     """What is possible and in all likelihood a slip."""
     bad = bad_devices(found)
     of_cell = list(plausibility_issues(cell, path.parent, bad))
+    of_cell += camera_issues(cell)
     of_cell += table_issues(cell, bad)
     of_cell += box_issues(cell, stated_bases(path), bad)
     yield from of_cell
@@ -108,6 +110,7 @@ def _remarks(cell: CellConfig, path: Path, needs: Iterable[ArmNeeds]) -> Iterato
     yield from arm_remarks(cell)
     yield from mounted_remarks(cell)
     yield from sensor_remarks(cell)
+    yield from camera_remarks(cell)
     yield from table_remarks(cell)
     yield from box_remarks(cell, needs)
     yield from calibration_file_remarks(cell, path.parent, utc_now())

@@ -14,6 +14,10 @@ from tests.unit.config.between_arms import BETWEEN_ARMS
 from tests.unit.config.deck_week import DECK_WEEK, DECK_WEEK_PASSES
 from tests.unit.config.fresh_cells import FRESH_CELLS, FRESH_CELLS_PASS
 from tests.unit.config.fresh_eyes import FRESH_EYES, FRESH_EYES_PASSES
+from tests.unit.config.images_and_drawings import (
+    IMAGES_AND_DRAWINGS,
+    IMAGES_AND_DRAWINGS_PASS,
+)
 from tests.unit.config.mistake import Mistake, Undecided
 from tests.unit.config.mistakes import MISTAKES
 from tests.unit.config.passed_before import PASSED_BEFORE, PASSES_WITH_REMARK
@@ -53,7 +57,7 @@ SECOND_LOOK = PLACES + FIGURES + OTHERS
 THIRD_DAY = IN_CELL_FILES + IN_DRAWINGS
 ALL = (
     *(MISTAKES + SECOND_LOOK + THIRD_DAY + PROTECTIVE + SINGLE_FIGURES + BETWEEN_ARMS),
-    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES + FRESH_CELLS + DECK_WEEK),
+    *(TOUCHING_CELLS + PASSED_BEFORE + FRESH_EYES + FRESH_CELLS + DECK_WEEK + IMAGES_AND_DRAWINGS),
 )
 
 
@@ -92,7 +96,7 @@ def test_a_mistake_is_refused_where_it_stands(tmp_path: Path, mistake: Mistake) 
     "case",
     [
         *(UNDECIDED + MEANT_PERHAPS + PASSES_WITH_REMARK + FRESH_EYES_PASSES),
-        *(FRESH_CELLS_PASS + DECK_WEEK_PASSES),
+        *(FRESH_CELLS_PASS + DECK_WEEK_PASSES + IMAGES_AND_DRAWINGS_PASS),
     ],
     ids=lambda one: one.reason,
 )

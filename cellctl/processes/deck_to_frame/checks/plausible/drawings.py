@@ -21,6 +21,8 @@ _PIN_MM = 0.1
 """One pin goes through both holes, with a few hundredths in each."""
 _PIN_PLACE_MM = 0.05
 """Two drawings have one pin at one place; what was measured on each part differs by less."""
+_HALF, _TWICE = (0.45, 0.55), (1.8, 2.2)
+"""Ratios of two diameters by which a drawing has the radius in place of one."""
 _BORE = (0.8, 1.65)
 """Limits of a deck's bore over the thread below it, which a drawing has as nominal or as core
 diameter: from a core hole to the coarse clearance hole of ISO 273, over the core of M2 or more."""
@@ -129,6 +131,13 @@ def _pairs(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:
             allowed = f"as hole {name} of {frame.written}, which is a {below.kind}"
             yield deck.hole_issue(name, "kind", repr(hole.kind), allowed)
             continue
+        if hole.kind == below.kind == "thread":
+            allowed = (
+                f"a bore over the thread of {frame.written}, or a pin in both files: a screw in "
+                "two threads presses nothing together"
+            )
+            yield deck.hole_issue(name, "kind", repr(hole.kind), allowed)
+            continue
         above_mm, below_mm = hole.diameter_m / MM, below.diameter_m / MM
         if hole.kind == "pin":
             wrong = abs(above_mm - below_mm) > _PIN_MM
@@ -138,9 +147,19 @@ def _pairs(deck: PartDrawing, frame: PartDrawing) -> Iterator[ConfigIssue]:
             wanted = f"{_BORE[0] * below_mm:.3g} to {_BORE[1] * below_mm:.3g} for one screw"
         if wrong:
             allowed = f"{wanted}; hole {name} of {frame.written} has {below_mm:g}"
+            allowed += _radius(above_mm / below_mm, deck.written, frame.written)
             yield deck.hole_issue(name, "diameter_mm", f"{above_mm:g}", allowed)
         elif hole.kind == "pin":
             yield from _pin_places(deck, frame, name)
+
+
+def _radius(ratio: float, above: str, below: str) -> str:
+    """The slip that two diameters tell of which one is half the other; empty for others."""
+    if _HALF[0] <= ratio <= _HALF[1]:
+        return f": this is half of it, as the radius is in place of the diameter in {above}"
+    if _TWICE[0] <= ratio <= _TWICE[1]:
+        return f": this is twice as much, as the radius is in place of the diameter in {below}"
+    return ""
 
 
 def _pin_places(deck: PartDrawing, frame: PartDrawing, name: str) -> Iterator[ConfigIssue]:

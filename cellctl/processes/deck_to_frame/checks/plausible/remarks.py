@@ -53,6 +53,8 @@ _DOWELS_MM = (
 """Diameters of ISO 8734 and ISO 2338 that are in use."""
 _TIGHTER_MM, _WIDER_MM = 0.05, 0.2
 """Of the hole of a dowel: pressed in, and with play."""
+_WIDEST_HEAD = 3.0
+"""Over the bore of its screw; countersunk heads have 1.8 to 2.2 (ISO 10642, ISO 15065)."""
 _USUAL_PAST_MM, _USUAL_WINDOW_MM = 0.5, 1.0
 _MOST_LEFT = 0.6
 """Of the target, at the upper end of the band in which relaxing ends: the paper leaves 10 to 20 N
@@ -71,6 +73,7 @@ def recipe_remarks(
         yield from _lines(drawing)
         yield from _exact_places(drawing)
     yield from _dowels(deck)
+    yield from _countersinks(deck)
     yield from _thickness_once(recipe, key, deck)
     yield from _compared(recipe, key)
     yield from _late(recipe, key)
@@ -127,6 +130,19 @@ def _dowels(deck: PartDrawing) -> Iterator[ConfigIssue]:
                 "the pin is a special one"
             )
             yield deck.hole_issue(hole.name, "diameter_mm", f"{wide_mm:g}", said)
+            return
+
+
+def _countersinks(deck: PartDrawing) -> Iterator[ConfigIssue]:
+    """A bore that is too narrow for the head that its countersink holds."""
+    for hole in deck.features.holes:
+        if hole.countersink_m is not None and hole.countersink_m > _WIDEST_HEAD * hole.diameter_m:
+            said = (
+                f"the countersink is {hole.countersink_m / hole.diameter_m:.2g} times as wide as "
+                "its bore, and heads of screws are twice: is this the radius?"
+            )
+            value = f"{hole.diameter_m / MM:g}"
+            yield deck.hole_issue(hole.name, "diameter_mm", value, said)
             return
 
 
