@@ -4,6 +4,7 @@ import ast
 import statistics
 import tomllib
 from collections import Counter
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -44,6 +45,13 @@ FOR_DRIVERS = {"interfaces", "geometry", "errors", "clock"}
 def parsed(path: Path) -> ast.Module:
     """Read once: most rules look through all files, and nobody changes a tree."""
     return ast.parse(path.read_text(encoding="utf-8"))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def let_go() -> Iterator[None]:
+    """All trees are millions of objects, which garbage collection would look through ever after."""
+    yield
+    parsed.cache_clear()
 
 
 def lines(path: Path) -> int:

@@ -11,10 +11,13 @@ from cellctl.guard.watch import realtime
 
 @pytest.fixture(autouse=True)
 def collector() -> Iterator[None]:
-    """The measures switch garbage collection off; a test process wants it back."""
+    """The measures switch garbage collection off; a test process wants it back.
+
+    What they froze stays so: with it the tests that were collected would thaw, and every later
+    collection go through them all (`tests/conftest.py`).
+    """
     yield
     gc.enable()
-    gc.unfreeze()
 
 
 def refuse(*_: object) -> None:
