@@ -50,6 +50,7 @@ def assert_refused(folder: Path, *clauses: str, only: str = "") -> None:
         assert f"::{clause}" in done.stdout, done.stdout
 
 
+@pytest.mark.figures  # the contract run once more, which only finds other errors then
 def test_a_driver_that_forgets_a_duty_does_not_pass(tmp_path: Path) -> None:
     """The contract finds what the page warns of: a bound and a stop that are missing, and the
     matrix of the guard's port read by columns."""

@@ -27,6 +27,7 @@ def test_every_error_of_a_cell_file_at_once(own: OwnCell) -> None:
     assert "cellctl check" in said
 
 
+@pytest.mark.figures  # a program; `tests/unit/config` shows each of them
 def test_settings_of_drivers_are_checked_too(own: OwnCell) -> None:
     own.change('transport = "tcp"', 'transport = "telepathy"')
     own.change('driver = "target-server"', 'driver = "crystal-ball"')
@@ -64,6 +65,7 @@ def test_store_may_not_be_written(own: OwnCell) -> None:
     refuses(own.daemon(), "F801", str(own.data))
 
 
+@pytest.mark.figures  # beside the taken port: both end before anything starts
 @pytest.mark.parametrize(
     ("options", "words"),
     [

@@ -107,7 +107,7 @@ statistics."""
     ("name", "besides"),
     sweep(
         (("deck", ()), ("antenna", ()), ("insertion-pin", FINDS_ROOTS), ("small", FINDS_ROOTS)),
-        (("deck", ()), ("insertion-pin", FINDS_ROOTS)),
+        (("insertion-pin", FINDS_ROOTS),),
     ),
 )
 def test_checking_a_cell_file_loads_neither_pictures_nor_the_database(

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from cellctl.config.commissioning import examine_before_commissioning
+from tests.rigs.sweeps import sweep
 from tests.unit.config.passing_lists import LISTS
 from tests.unit.config.passing_slips import FIGURES, Kind
 from tests.unit.config.slips import SLIPS, Edit, edits
@@ -52,15 +53,15 @@ def judged(
     return undecided, otherwise
 
 
-# The standard test has the file that is read quickest. The deck's moves are stated anew for each
-# edit that passes, and most that pass are divided.
+# The standard test has one slip in the file that is read quickest. The deck's moves are stated
+# anew for each edit that passes, and most that pass are divided.
 _QUICK = "insertion-pin.toml"
 _LONG = {("deck.toml", "/10")}
 
 
 def _when(name: str, slip: str) -> tuple[pytest.MarkDecorator, ...]:
     """When the sweep of a file is run: always, with the figures or before a release."""
-    if name == _QUICK:
+    if name == _QUICK and slip == "x10":
         return ()
     return (pytest.mark.long if (name, slip) in _LONG else pytest.mark.figures,)
 
@@ -76,9 +77,10 @@ def test_what_passes_was_decided_and_has_its_remark(tmp_path: Path, name: str, s
     assert judged(tmp_path / "cell", name, chosen, FIGURES) == ([], [])
 
 
-def test_factors_and_signs_in_lists_were_decided(tmp_path: Path) -> None:
+@pytest.mark.parametrize("slip", sweep(FACTORS, ("sign",)))
+def test_factors_and_signs_in_lists_were_decided(tmp_path: Path, slip: str) -> None:
     def chosen(edit: Edit) -> bool:
-        return edit.slip in FACTORS and edit.figure.listed
+        return edit.slip == slip and edit.figure.listed
 
     assert judged(tmp_path / "cell", "insertion-pin.toml", chosen, LISTS) == ([], [])
 

@@ -21,7 +21,7 @@ print(sorted(set(heavy) & set(sys.modules)))
     ("pattern", "heavy"),
     [
         # Drawing alone was a quarter of the start.
-        (r"\.procedures\.", ("matplotlib", "weasyprint")),
+        pytest.param(r"\.procedures\.", ("matplotlib", "weasyprint"), marks=pytest.mark.figures),
         (r"deck_to_frame\.(process$|procedures\.)", ("scipy.optimize", "scipy.stats")),
     ],
     ids=["drawing", "solving"],

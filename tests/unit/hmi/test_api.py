@@ -255,6 +255,7 @@ def test_the_report_of_a_run_is_a_file_to_keep(page: Client) -> None:
     problem(page.get("runs/99/report"), 404, "fault-804")
 
 
+@pytest.mark.figures  # made by a program, as is the archive
 def test_the_recording_of_a_run_is_a_file_for_viewers(page: Client) -> None:
     recording = page.get("runs/1/recording?images=none")
     assert recording.status == 200

@@ -320,10 +320,10 @@ async def boards(rig: ProcedureRig) -> tuple[RecordedRun, RecordedRun]:
     return runs[0], runs[1]
 
 
-async def test_boards_are_computed_anew_from_their_images(
+async def test_a_board_is_computed_anew_from_its_images_and_one_that_was_late_is_told(
     rig: ProcedureRig, boards: tuple[RecordedRun, RecordedRun]
 ) -> None:
-    first, second = boards
+    first, _ = boards
     images = [one.name for one in first.record.artefacts if one.media_type == MEDIA_TYPE]
     assert sorted(images) == [
         f"raw/board-{number}-frame-1-head_1-{side}.pgm.zst"
@@ -334,6 +334,18 @@ async def test_boards_are_computed_anew_from_their_images(
     assert "board in the head" in said
     assert "board in the large-field head" in said
     assert "board_transfer" not in said, "the other head was still to come"
+
+    there = [one for one in first.record.artefacts if "board-3" not in one.name]
+    lacking = replace(first, record=replace(first.record, artefacts=tuple(there)))
+    with pytest.raises(NotReplayable, match=r"raw/board-3-frame-1-head_1-left.* and 1 more"):
+        again(lacking)
+
+
+@pytest.mark.figures  # the boards of the other head, twice
+async def test_a_transfer_by_boards_is_computed_anew(
+    rig: ProcedureRig, boards: tuple[RecordedRun, RecordedRun]
+) -> None:
+    _, second = boards
     assert "C1_T_C2 position sigma" in await comes_out_the_same(rig, second)
 
     # With a pixel of disparity the board is about a millimetre nearer.
@@ -341,16 +353,6 @@ async def test_boards_are_computed_anew_from_their_images(
     assert 0.1 < abs(found["board in the head: Z"]) < 5.0
     assert abs(found["board_transfer: board rms, small-field heads"]) > 1e-5
     assert not any(name.startswith("board in the large-field head") for name in found)
-
-
-async def test_an_image_that_was_late_for_its_record_is_told(
-    boards: tuple[RecordedRun, RecordedRun],
-) -> None:
-    first, _ = boards
-    there = [one for one in first.record.artefacts if "board-3" not in one.name]
-    lacking = replace(first, record=replace(first.record, artefacts=tuple(there)))
-    with pytest.raises(NotReplayable, match=r"raw/board-3-frame-1-head_1-left.* and 1 more"):
-        again(lacking)
 
 
 # -- 101, 102: the cameras of a head ---------------------------------------------------------------

@@ -107,6 +107,7 @@ def test_the_papers_steps_stay_selectable(pair: Pair) -> None:
     assert np.abs(result.positions_m - TRUTH[[0, 2]]).max() < 1e-3
 
 
+@pytest.mark.figures  # the metrology benchmark measures a disc as well
 def test_white_discs_are_measured_alike() -> None:
     discs = holes_triangle(("disc", "disc", "disc"))
     images = render_pair(HEAD, POSE, discs, Light(), seed=3)

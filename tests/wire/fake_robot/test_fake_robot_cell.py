@@ -114,6 +114,7 @@ async def test_hands_of_an_operator_from_a_terminal() -> None:
     assert "no fake cell listens on port" in gone.stderr
 
 
+@pytest.mark.figures  # a program that only ends
 async def test_taken_port_is_said_and_ends_with_an_error() -> None:
     server = await asyncio.start_server(lambda _reader, writer: writer.close(), "127.0.0.1", 0)
     port = server.sockets[0].getsockname()[1]

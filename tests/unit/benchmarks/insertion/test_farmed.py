@@ -19,6 +19,7 @@ from benchmarks.insertion.fault_cycles import CycleFault
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 from cellctl.version import software
 from fakes.scenes.socket.peaks import ForcePeaks
+from tests.rigs.sweeps import sweep
 
 Job = tuple[str, int]
 
@@ -70,7 +71,7 @@ def interruptible() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("interruptible")
-@pytest.mark.parametrize("by", ["a", "b"])
+@pytest.mark.parametrize("by", sweep(("a", "b"), ("a",)))
 def test_an_interrupted_campaign_keeps_what_it_has(tmp_path: Path, by: str) -> None:
     out = tmp_path / "lines.json"
     jobs = [(by, seed) for seed in range(40)]

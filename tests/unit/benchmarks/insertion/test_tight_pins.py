@@ -7,10 +7,10 @@ from benchmarks.insertion.tight_pins import TIGHT_PINS, tight_pin_cell
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.phases import CyclePhase
 
-_OTHERS = [pytest.param(name, marks=pytest.mark.figures) for name in TIGHT_PINS if name != "b-20um"]
 
-
-@pytest.mark.parametrize("name", ["b-20um", *_OTHERS])
+# `test_insert_peg.py` has a whole cycle, `test_strategies.py` the search of these pins.
+@pytest.mark.figures
+@pytest.mark.parametrize("name", TIGHT_PINS)
 def test_a_pin_without_chamfers_finds_its_hole_and_goes_in(name: str) -> None:
     cell = tight_pin_cell(name)
     assert cell.plan.choice.order[0] is SearchName.TILTED_VALLEY

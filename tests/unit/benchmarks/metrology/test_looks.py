@@ -28,8 +28,8 @@ WORST_PX = {
     "turns": 0.10,
     "chamfered turns": 0.15,
 }
-QUICK = ("lit wall", "true cone", "turns")
-"""A wall, a cone and a thread: one look of each kind of rim. All others are figures."""
+QUICK = ("lit wall", "turns")
+"""A plain rim and a thread. All others are figures."""
 
 
 @pytest.mark.parametrize(

@@ -22,6 +22,7 @@ def test_a_way_is_measured_beside_a_bare_socket(
         assert stall >= 0.0
 
 
+@pytest.mark.figures  # a second measurement
 def test_jobs_cannot_answer_before_they_have_read_their_command(
     capsys: pytest.CaptureFixture[str],
 ) -> None:

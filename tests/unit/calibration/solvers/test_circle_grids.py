@@ -24,6 +24,7 @@ def tilts(rng: np.random.Generator) -> list[tuple[float, ...]]:
     return [(*rng.uniform(-35, 35, 2), rng.uniform(-180, 180)) for _ in range(12)]
 
 
+@pytest.mark.figures  # the command calibrates from such images as well
 def test_a_single_camera() -> None:
     rng = np.random.default_rng(8)
     seen = [seen_grid(HEAD, GRID, tilt, rng) for tilt in tilts(rng)]

@@ -54,7 +54,12 @@ def ray_errors(found: CameraModel, truth: LensModel) -> Array:
 
 
 @pytest.mark.parametrize(
-    "truth", [LensModel.FIVE, LensModel.TILTED, pytest.param(LensModel.RATIONAL, marks=LONG)]
+    "truth",
+    [
+        LensModel.FIVE,
+        pytest.param(LensModel.TILTED, marks=pytest.mark.figures),
+        pytest.param(LensModel.RATIONAL, marks=LONG),
+    ],
 )
 def test_a_camera_gets_the_terms_of_its_lens(truth: LensModel) -> None:
     lens, why = chosen_lens(lambda lens: of_camera(truth, lens), lambda one: one.held_out_px)

@@ -202,7 +202,7 @@ class AlwaysLate(dict[int, float]):
     [
         # Ways so short that next to all of the time is what every motion is given.
         lambda motions: motions.back_out(-9.15e-3),
-        lambda motions: motions.feed(9.25e-3, 30.0),
+        pytest.param(lambda motions: motions.feed(9.25e-3, 30.0), marks=pytest.mark.figures),
     ],
     ids=["back out", "feed"],
 )

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import cv2
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from fakes.render import api
@@ -99,6 +100,7 @@ def test_clutter_stays_clear_of_holes_and_can_be_switched_off() -> None:
     assert not changed[np.hypot(x, y) < 42].any()
 
 
+@pytest.mark.figures  # calibrations find it in their images
 def test_opencv_finds_the_chessboard_where_it_is() -> None:
     board = api.nominal_chessboard(api.facing_pose(tilt_deg=(8.0, -12.0, 3.0)))
     stereo = api.nominal_head()

@@ -3,6 +3,7 @@ import pytest
 
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from fakes.scenes.deck_on_frame.scene import DeckOnFrame
+from tests.rigs.sweeps import sweep
 from tests.unit.fakes.world.driving import to_taught
 
 
@@ -31,7 +32,9 @@ def test_flange_turned_away_is_not_seen(scenario: DeckScenario) -> None:
     assert world.targets("tracker", 1) == ()
 
 
-@pytest.mark.parametrize(("axis", "arc_deg"), [(0, (-50, 50)), (1, (-125, -35))])
+@pytest.mark.parametrize(
+    ("axis", "arc_deg"), sweep(((0, (-50, 50)), (1, (-125, -35))), ((0, (-50, 50)),))
+)
 def test_targets_stay_in_view_over_the_calibration_arcs(
     scenario: DeckScenario, axis: int, arc_deg: tuple[int, int]
 ) -> None:

@@ -3,6 +3,7 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
+import pytest
 import trimesh
 from matplotlib.image import imread
 
@@ -81,6 +82,7 @@ def test_a_path_goes_through_the_points_of_its_way() -> None:
     assert off_m.min() < 1e-9
 
 
+@pytest.mark.figures  # beside the picture of arms and stand-ins
 def test_lines_of_sight_and_ways_are_drawn() -> None:
     scene = deck_scene()
     assert three_views(scene, tuple(frusta(scene)), ()) != without_lines()

@@ -45,6 +45,7 @@ def test_the_shipped_zones_keep_apart_what_could_meet(monkeypatch: pytest.Monkey
     assert found(monkeypatch, SCENE) == []
 
 
+@pytest.mark.figures  # as a head that meets it is
 def test_a_main_arm_that_may_stand_beside_its_box_and_meet_a_head_is_found(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -1,5 +1,7 @@
 """A serial number that the store already has a finished part for: an alarm, and the run goes on."""
 
+import pytest
+
 from cellctl.errors.line import SerialMadeBefore
 from cellctl.packml.command import Command
 from cellctl.packml.result import Result
@@ -26,6 +28,7 @@ async def test_the_second_part_of_a_number_is_made_with_an_alarm(rig: DaemonRig)
     assert "SAT-7 in run 1, good, " in alarm.text
 
 
+@pytest.mark.figures  # three parts
 async def test_a_third_one_names_the_newest_and_counts_the_others(rig: DaemonRig) -> None:
     for _ in range(3):
         await made(rig)
@@ -33,6 +36,7 @@ async def test_a_third_one_names_the_newest_and_counts_the_others(rig: DaemonRig
     assert "SAT-7 in run 2 and 1 more, good, " in alarm.text
 
 
+@pytest.mark.figures  # two more parts
 async def test_another_number_and_a_dry_run_are_no_such_part(rig: DaemonRig) -> None:
     await made(rig)
     await made(rig, serial="SAT-8")

@@ -12,6 +12,7 @@ from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.holes.turned import pose_turned_like
 from cellctl.vision.measure import measure_pair
 from tests.rigs.calibration.drawn_discs import drawn_discs
+from tests.rigs.sweeps import sweep
 from tests.unit.vision.plates import plate_facing, table_1_head
 
 HEAD = table_1_head()
@@ -33,7 +34,7 @@ def told(angle_deg: float) -> RigidTransform:
     return plate_facing(50.0, 0.0) * RigidTransform.from_rotation(about_normal)
 
 
-@pytest.mark.parametrize("angle_deg", [0.0, 60.0, -60.0])
+@pytest.mark.parametrize("angle_deg", sweep((0.0, 60.0, -60.0), (60.0,)))
 def test_the_turn_that_is_told_decides_which_disc_is_which(angle_deg: float) -> None:
     with pytest.raises(HoleMissing):
         measure_pair(

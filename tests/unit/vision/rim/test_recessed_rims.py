@@ -11,6 +11,7 @@ from cellctl.vision.measurement import PairMeasurement
 from fakes.render import api
 from fakes.render.bodies.holes import rim_depth
 from tests.rigs.metrology.scenes import HEAD_HOLES, stereo_head
+from tests.rigs.sweeps import sweep
 
 Errors = list[tuple[str, np.ndarray, float]]
 
@@ -43,7 +44,7 @@ def _errors(kind: Literal["deck", "frame"], options: api.RenderOptions, seed: in
     return result
 
 
-@pytest.mark.parametrize("kind", ["deck", "frame"])
+@pytest.mark.parametrize("kind", sweep(("deck", "frame"), ("frame",)))
 @pytest.mark.parametrize("recessed", [False, pytest.param(True, marks=pytest.mark.long)])
 def test_rims_are_measured_where_they_are(kind: Literal["deck", "frame"], recessed: bool) -> None:
     options = api.RenderOptions(recessed_rims=recessed)

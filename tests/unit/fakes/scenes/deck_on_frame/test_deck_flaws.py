@@ -99,6 +99,7 @@ def test_a_flat_deck_is_seen_as_it_is(scenario: DeckScenario) -> None:
     )
 
 
+@pytest.mark.figures  # seconds of contact
 def test_a_bent_deck_rests_on_its_corners(scenario: DeckScenario) -> None:
     bent = with_scales(scenario, deck_flex=5.0)
     grown_n = []

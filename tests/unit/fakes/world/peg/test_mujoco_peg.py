@@ -25,7 +25,7 @@ def _both(push: Push, depth_m: float) -> tuple[Array, Array]:
 @pytest.mark.parametrize(
     "push",
     [
-        Push(pin(0.05), 2e4, x_m=0.2 * MM),
+        pytest.param(Push(pin(0.05), 2e4, x_m=0.2 * MM), marks=pytest.mark.figures),
         pytest.param(Push(pin(0.02), 2e4, x_m=0.5 * MM), marks=pytest.mark.long),
         Push(plug(), 5e4, x_m=0.4 * MM),
     ],

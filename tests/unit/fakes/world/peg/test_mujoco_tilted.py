@@ -14,6 +14,8 @@ from fakes.world.frames import Array
 from tests.unit.fakes.world.peg.judge import COMMANDED, DEPTH, F_X, F_Z, Push, X, Y
 from tests.unit.fakes.world.peg.pushing import MM, pin
 
+FIGURES = pytest.mark.figures
+
 _PRESSES = (0.3, 0.55, 0.8)
 """Shares of the way after the first contact at which forces are compared."""
 _FELT_N = 0.1
@@ -62,14 +64,20 @@ _WIDER = replace(_STIFF, fit=pin(0.05, 0.0), tilt_rad=float(np.deg2rad(5.0)))
 @pytest.mark.parametrize(
     ("x_mm", "y_mm", "to_mm"),
     [
-        pytest.param(0.2, 0.0, 0.22, id="in front, on its lowest point"),
+        pytest.param(0.2, 0.0, 0.22, id="in front, on its lowest point", marks=FIGURES),
         pytest.param(0.0, -0.5, 0.22, id="beside, next to its lowest point"),
         pytest.param(-0.2, 0.0, -0.23, id="behind, across the edge on both sides"),
-        pytest.param(-1.0, 0.0, -0.14, id="far behind, across the edge on both sides"),
-        pytest.param(-0.35, 0.35, 0.12, id="behind and beside, across the edge on one side"),
+        pytest.param(
+            -1.0, 0.0, -0.14, id="far behind, across the edge on both sides", marks=FIGURES
+        ),
+        pytest.param(
+            -0.35, 0.35, 0.12, id="behind and beside, across the edge on one side", marks=FIGURES
+        ),
         pytest.param(-0.14, 0.14, 0.04, id="slides towards the mouth"),
-        pytest.param(0.0, 0.06, 0.14, id="slides into the mouth from beside"),
-        pytest.param(-0.06, 0.0, -0.38, id="goes into the mouth between both sides, and jams"),
+        pytest.param(0.0, 0.06, 0.14, id="slides into the mouth from beside", marks=FIGURES),
+        pytest.param(
+            -0.06, 0.0, -0.38, id="goes into the mouth between both sides, and jams", marks=FIGURES
+        ),
         pytest.param(0.03, 0.015, -0.2, id="goes in along the wall in front"),
         pytest.param(-0.03, 0.01, -0.38, id="goes in beside the middle, and jams"),
     ],
@@ -82,12 +90,12 @@ def test_by_place(x_mm: float, y_mm: float, to_mm: float) -> None:
 @pytest.mark.parametrize(
     ("push", "x_mm", "y_mm", "to_mm"),
     [
-        pytest.param(_STIFF, -0.2, 0.0, -0.06, id="behind"),
+        pytest.param(_STIFF, -0.2, 0.0, -0.06, id="behind", marks=FIGURES),
         pytest.param(_STIFF, -0.14, 0.14, 0.21, id="slides", marks=pytest.mark.long),
         pytest.param(_STIFF, 0.0, 0.03, 0.05, id="beside, along the wall"),
         pytest.param(_WIDER, -0.2, 0.0, -0.09, id="wider, behind"),
         pytest.param(_WIDER, 0.0, 0.06, 0.09, id="wider, beside", marks=pytest.mark.long),
-        pytest.param(_WIDER, 0.03, 0.03, -0.05, id="wider, along the wall"),
+        pytest.param(_WIDER, 0.03, 0.03, -0.05, id="wider, along the wall", marks=FIGURES),
     ],
 )
 def test_held_by_a_stiff_arm(push: Push, x_mm: float, y_mm: float, to_mm: float) -> None:

@@ -8,6 +8,7 @@ import pytest
 from fakes.world.frames import Array
 from fakes.world.peg.fit import Fit
 from fakes.world.peg.held_peg import HeldPeg
+from tests.rigs.sweeps import sweep
 from tests.unit.fakes.world.peg.pushing import MM, arm, pin, plug, reach_into_plate_m
 
 _STEPS = 500
@@ -39,7 +40,7 @@ def _wandered(peg: HeldPeg, robot_n_m: Array, seed: int) -> tuple[float, float]:
     return unbalanced_n, deepest_m
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", sweep((1, 2, 3), (1,)))
 @pytest.mark.parametrize(
     ("fit", "tilt_deg"), [(pin(0.02, 0.0), 8.0), (pin(0.05), 8.0), (plug(), 2.0)]
 )

@@ -13,11 +13,12 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.processes.antenna_module.faults.connector import PlaneScaleWrong
 from cellctl.processes.antenna_module.vision.measure import measure_connector, measure_marks
 from tests.rigs.antenna.pictures import CLEAN, Conditions, trial
+from tests.rigs.sweeps import sweep
 
 HEIGHT_SIGMA_M = 0.2e-3
 
 
-@pytest.mark.parametrize("wrong_m", [-0.4e-3, 0.0, 0.4e-3])
+@pytest.mark.parametrize("wrong_m", sweep((-0.4e-3, 0.0, 0.4e-3), (0.4e-3,)))
 def test_marks_are_found_within_what_is_stated_of_the_height(wrong_m: float) -> None:
     given = trial(1, Conditions(marks=True, um_per_px=(35.0, 35.0), height_sigma_m=HEIGHT_SIGMA_M))
     assert given.marks is not None
@@ -31,7 +32,7 @@ def test_marks_are_found_within_what_is_stated_of_the_height(wrong_m: float) -> 
     assert np.linalg.norm(moved[:2]) < 7e-3 * abs(wrong_m) / 0.25 + 1e-6
 
 
-@pytest.mark.parametrize("wrong_m", [-2e-3, 2e-3])
+@pytest.mark.parametrize("wrong_m", sweep((-2e-3, 2e-3), (2e-3,)))
 def test_contacts_that_look_too_large_or_too_small_for_their_plane_are_refused(
     wrong_m: float,
 ) -> None:

@@ -88,6 +88,7 @@ def test_a_deck_that_was_just_seated_comes_off_without_a_fault() -> None:
     assert world.guard.trip is None
 
 
+@pytest.mark.figures  # seconds of motion
 def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
     world = MatingCell.drawn(8, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
     arrivals = Arrivals()

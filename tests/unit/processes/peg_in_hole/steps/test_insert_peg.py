@@ -96,6 +96,7 @@ def planned(task: SearchTask) -> CyclePlan:
     return CyclePlan(task, choice, PegSeatLimits(5.0, 35.0), FacePlan(8e-3, 3e-3), 200.0)
 
 
+@pytest.mark.figures  # a whole search; the cycle ends alike in `test_cycle.py`
 @pytest.mark.filterwarnings("error")
 async def test_a_search_that_finds_no_hole_keeps_its_path_and_leaves_the_face(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
