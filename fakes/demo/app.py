@@ -2,6 +2,7 @@
 
 import sys
 import tomllib
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -27,6 +28,7 @@ from fakes.demo.safety import (
 from fakes.demo.session import GOOD, INTERRUPTED, NOT_STARTED, Files, Session
 from fakes.gentl.build import NoCompilerError
 from fakes.imperfections import UnknownImperfection, parsed_scale
+from fakes.known_faults import UnknownFault, known_faults, require_known
 from fakes.scenario_file.sections import JobController
 from fakes.scenes.load import load
 from fakes.scenes.registry import UnknownScene
@@ -87,7 +89,10 @@ def demo(
     stay: Annotated[bool, typer.Option(help="Start and wait for an outside PLC.")] = False,
     quiet: Annotated[bool, typer.Option(help="No live view.")] = False,
     fault: Annotated[
-        list[str] | None, typer.Option(help="Inject before the start: device:name.")
+        list[str] | None,
+        typer.Option(
+            help="Inject before the start: device:name; unknown ones list those there are."
+        ),
     ] = None,
     imperfection: Annotated[
         list[str] | None, typer.Option(help="NAME=SCALE, in place of that of the scenario file.")
@@ -122,8 +127,10 @@ def demo(
             robots=robots,
             cameras=cameras,
         )
-        _check(files)
+        _check(files, job.faults)
         code = _run(shown, files, job, console, complaint)
+    except UnknownFault as error:
+        raise typer.BadParameter(str(error), param_hint="--fault") from error
     except _REFUSALS as error:
         complaint.print(str(error), markup=False)
         code = NOT_STARTED
@@ -163,14 +170,20 @@ def _beside(cell: Path | None) -> Path | None:
     return scenario if scenario.is_file() else None
 
 
-def _check(files: Files) -> None:
-    """Everything that can be said before a process starts; raises one of ``_REFUSALS``."""
+def _check(files: Files, faults: Sequence[str]) -> None:
+    """Everything that can be said before a process starts; raises ``UnknownFault`` or one of
+    ``_REFUSALS``."""
     require_simulated(files.cell)
     require_own_folder(files.out)
     try:
         scenario = load(files.scenario, files.imperfections)
     except (tomllib.TOMLDecodeError, ValidationError) as error:
         raise ChildFailed(f"scenario {files.scenario}: {error}") from error
+    if files.robots is not None:
+        scenario = scenario.with_controllers(files.robots)
+    known = known_faults(scenario, files.cameras)
+    for item in faults:
+        require_known(item, known)
     check_ports(scenario, files.cell)
 
 

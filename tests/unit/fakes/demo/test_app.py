@@ -1,4 +1,4 @@
-"""What the demonstration refuses before it starts a process: each time one sentence and code 1."""
+"""What the demonstration refuses before it starts a process: mostly one sentence and code 1."""
 
 import socket
 from collections.abc import Iterator
@@ -106,6 +106,23 @@ def test_a_way_of_the_images_that_cannot_be_built_is_refused(
     files = ("--scenario", str(own.scenario), "--cell", str(own.cell))
     said = refused(*files, "--out", str(tmp_path / "out"), "--cameras", "gentl")
     assert said == "no C compiler (cc) on this machine\n"
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ("silent", "'silent' is no device:name; the devices are main, aux_1, aux_2,"),
+        ("head_3:silent", "the devices are main, aux_1, aux_2,"),
+        ("main:slient", "main knows no fault 'slient'; it knows abort, automatic_mode,"),
+        ("world:rain", "world knows no fault 'rain'"),
+    ],
+)
+def test_an_unknown_fault_starts_nothing(tmp_path: Path, fault: str, said: str) -> None:
+    out = tmp_path / "out"
+    done = CliRunner().invoke(app, ["--fault", fault, "--out", str(out)])
+    assert done.exit_code == 2
+    assert said in " ".join(done.stderr.split())
+    assert not out.exists()
 
 
 def test_an_unknown_scene_names_those_that_there_are(tmp_path: Path) -> None:
