@@ -1,6 +1,7 @@
 """`cellctl doctor`: whether this PC can run the cell."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -8,7 +9,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.doctor.diagnosis import Subject, diagnose
 from cellctl.doctor.finding import Finding, Health
@@ -18,6 +19,8 @@ _MARKS = {
     Health.DOUBTFUL: ("!", "yellow"),
     Health.BAD: ("✗", "bold red"),
 }
+_FOUND, _REMEDY = 4, 6
+"""Where the text of a finding and that of its remedy begin."""
 
 
 def doctor(
@@ -34,13 +37,13 @@ def doctor(
     if as_json:
         typer.echo(json.dumps([asdict(subject) for subject in subjects], indent=2))
     else:
-        _print(subjects)
+        show(console_of_lines(), subjects)
     if any(subject.health is Health.BAD for subject in subjects):
         raise typer.Exit(1)
 
 
-def _print(subjects: list[Subject]) -> None:
-    console = console_of_lines()
+def show(console: Console, subjects: Sequence[Subject]) -> None:
+    """Every finding with its remedy; on a terminal their lines go on below their text."""
     for subject in subjects:
         console.print(subject.title, style="bold")
         for finding in subject.findings:
@@ -54,6 +57,6 @@ def _print(subjects: list[Subject]) -> None:
 
 def _print_finding(console: Console, finding: Finding) -> None:
     mark, style = _MARKS[finding.health]
-    console.print(f"  {mark} {finding.subject}: {finding.found}", style=style)
+    print_hanging(console, f"  {mark} {finding.subject}: {finding.found}", _FOUND, style)
     if finding.remedy:
-        console.print(f"      {finding.remedy}")
+        print_hanging(console, f"{'':{_REMEDY}}{finding.remedy}", _REMEDY)
