@@ -80,6 +80,7 @@ class Session:
         self._seed = seed
         self._begun_s = time.monotonic()
         self._daemon: Child | None = None
+        self._cell = files.cell
         self._daemon_command: list[str] = []
         self._gentl: GentlPath | None = None
         self._hands: int | None = None
@@ -111,6 +112,7 @@ class Session:
         """The daemon, until every device of its cell file is connected."""
         store = self._folder / "store"
         cell = self._files.cell if self._gentl is None else self._gentl.cell
+        self._cell = cell
         command = ["-m", "cellctl", "run", str(cell), "--data-dir", str(store)]
         calibrations = own_calibrations(self._files.cell, self._folder)
         if calibrations is not None:
@@ -154,6 +156,7 @@ class Session:
         hands = f"--port {self._hands}"
         self._console.print(
             f"Modbus TCP on 127.0.0.1:{self._modbus_port}, map in docs/register-map.md\n"
+            f"  its cell file:      {self._cell}\n"
             f"  a line PLC to try:  .venv/bin/python -m fakes plc --port {self._modbus_port}\n"
             f"  its state:          .venv/bin/cellctl status --watch --socket {socket}\n"
             f"  its runs:           .venv/bin/cellctl runs list {data}\n"

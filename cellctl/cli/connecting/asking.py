@@ -3,18 +3,20 @@
 import asyncio
 import threading
 from collections.abc import Callable, Coroutine, Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from cellctl.cli.connecting.answer import Answer, answered
-from cellctl.cli.connecting.cameras import ask_camera, ask_tracker
+from cellctl.cli.connecting.cameras import OF_A_FAKE_CELL, ask_camera, ask_tracker
 from cellctl.cli.connecting.guards import ask_sensor, ask_stop_channel
 from cellctl.cli.connecting.instruments import with_instruments
 from cellctl.cli.connecting.line import line_port_held
 from cellctl.cli.connecting.outputs import ask_gripper, ask_io
 from cellctl.cli.connecting.robots import ask_robot
 from cellctl.config import CellConfig
-from cellctl.errors.link import PortInUse
+from cellctl.config.devices import CameraConfig
+from cellctl.errors.link import ConnectTimeout, PortInUse
 from cellctl.errors.local import CellInUse
 
 Questions = Mapping[str, Coroutine[Any, Any, Answer]]
@@ -42,6 +44,7 @@ async def ask_devices(
             found += [Answer(path, drivers[path], fault=CellInUse(why)) for path in others]
         else:
             found += await _asked(cell, others, tell)
+    found = [_of_a_fake_cell(cell, answer) for answer in found]
     compared = with_instruments(cell, folder / cell.calibration_dir, found)
     return [*_in_order(cell, compared), line]
 
@@ -92,6 +95,15 @@ def _others(cell: CellConfig) -> Questions:
     for name, io in cell.digital_ios.items():
         questions[f"digital_ios.{name}"] = ask_io(name, io)
     return questions
+
+
+def _of_a_fake_cell(cell: CellConfig, answer: Answer) -> Answer:
+    """A fake cell may show its cameras in two ways, and a cell file knows one of them."""
+    device = cell.devices()[answer.path][1]
+    silent = isinstance(answer.fault, ConnectTimeout)
+    if not (silent and isinstance(device, CameraConfig) and device.simulated):
+        return answer
+    return replace(answer, notes=(*answer.notes, OF_A_FAKE_CELL))
 
 
 def _drivers(cell: CellConfig) -> dict[str, str]:

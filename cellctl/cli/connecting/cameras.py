@@ -9,6 +9,11 @@ from cellctl.interfaces.exposure import ExposureRecord
 from cellctl.interfaces.stereo_camera import StereoPair
 
 _QUESTIONS = 5
+OF_A_FAKE_CELL = (
+    "a fake cell whose images come through GenTL has no frame servers, and a producer of its own: "
+    "ask with the cell file that `cellctl demo --stay` names once it is up"
+)
+"""Said where a simulated camera or head is not there."""
 
 
 async def ask_camera(section: str, name: str, config: CameraConfig) -> Answer:

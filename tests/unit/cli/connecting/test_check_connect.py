@@ -121,6 +121,7 @@ def test_an_absent_camera_keeps_nobody_from_being_asked(own: OwnCell) -> None:
         in done.stdout
     )
     assert "Clear and Reset" not in done.stdout, "no daemon runs that would take them"
+    assert done.stdout.count("with the cell file that `cellctl demo --stay` names") == 1
     assert "3 of 4 devices answer" in done.stdout
     assert f"{SENSOR} by sri: answers" in done.stdout
 

@@ -41,6 +41,7 @@ def test_a_daemon_that_was_killed_is_started_again_and_one_that_ended_is_not(
         session._spawn_daemon("daemon")
         with pytest.raises(ChildFailed, match="it ended by itself"):
             session.run(calibrate=False, stay=True)
+    assert f"its cell file:      {tmp_path / 'none.toml'}" in words.getvalue()
     assert "killed by SIGKILL" in words.getvalue()
     assert (tmp_path / "daemon.log").exists()
     assert (tmp_path / "daemon-2.log").exists()
