@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from queue import Empty, Queue
@@ -35,6 +35,8 @@ class Child:
     process: subprocess.Popen[str]
     lines: "Queue[dict[str, Any] | None]"
     log: Path
+    _asked_to: int = 0
+    """Bytes of the log in which ``new_faults`` has looked."""
 
     @classmethod
     def start(cls, name: str, command: list[str], log: Path) -> "Child":
@@ -106,20 +108,23 @@ class Child:
 
     def faults(self) -> list[str]:
         """Every numbered fault in the log, once, with its remedy."""
-        found: dict[str, None] = {}
-        for entry in self._entries():
-            if "number" in entry and "fault" in entry:
-                remedy = f"\n  remedy: {entry['remedy']}" if entry.get("remedy") else ""
-                found[f"{entry['fault']}{remedy}"] = None
-        return list(found)
+        return _faults(self._entries())
+
+    def new_faults(self) -> list[str]:
+        """The same of what the log has gained since this was asked last."""
+        with self.log.open("rb") as log:
+            log.seek(self._asked_to)
+            # What follows the last line is the beginning of one that is being written.
+            whole = log.read().rpartition(b"\n")[0]
+        self._asked_to += len(whole)
+        return _faults(_entries_of(whole.decode()))
 
     def logged(self, event: str) -> dict[str, Any] | None:
         """The last entry of the log with this event."""
         return next((e for e in reversed(self._entries()) if e.get("event") == event), None)
 
     def _entries(self) -> list[dict[str, Any]]:
-        lines = self.log.read_text(encoding="utf-8").splitlines()
-        return [entry for line in lines if (entry := _entry(line)) is not None]
+        return _entries_of(self.log.read_text(encoding="utf-8"))
 
     def stop(self) -> None:
         """Ask the child to end; after a time-out kill its whole group."""
@@ -131,6 +136,19 @@ class Child:
             # The group: whatever the child has started and left behind goes with it.
             os.killpg(self.process.pid, signal.SIGKILL)
         self.process.wait(STOP_TIMEOUT_S)
+
+
+def _faults(entries: Iterable[dict[str, Any]]) -> list[str]:
+    found: dict[str, None] = {}
+    for entry in entries:
+        if "number" in entry and "fault" in entry:
+            remedy = f"\n  remedy: {entry['remedy']}" if entry.get("remedy") else ""
+            found[f"{entry['fault']}{remedy}"] = None
+    return list(found)
+
+
+def _entries_of(text: str) -> list[dict[str, Any]]:
+    return [entry for line in text.splitlines() if (entry := _entry(line)) is not None]
 
 
 def _entry(line: str) -> dict[str, Any] | None:

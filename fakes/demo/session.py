@@ -2,15 +2,17 @@
 
 import signal
 import time
+from collections import deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from queue import Empty
 from typing import Any
 
 from rich.console import Console
 
 from fakes.demo.children import Child, ChildFailed, Family
-from fakes.demo.control import Control
+from fakes.demo.control import Control, Refused
 from fakes.demo.demo import Demo
 from fakes.demo.gentl import Cameras, GentlPath, way_of_images
 from fakes.demo.live import LiveView
@@ -70,7 +72,9 @@ class Session:
         family: Family,
         console: Console,
         complaint: Console,
+        look_s: float | None = 5.0,
     ) -> None:
+        """``look_s``: how often a cell that stays is asked whether this computer is too slow."""
         self._demo = demo
         self._files = files
         self._family = family
@@ -79,6 +83,9 @@ class Session:
         self._folder = files.out
         self._seed = seed
         self._begun_s = time.monotonic()
+        self._look_s = look_s
+        self._looks = deque([(self._begun_s, 0.0)], maxlen=3)
+        """Times, and what the fake cell had lost by then, s."""
         self._daemon: Child | None = None
         self._cell = files.cell
         self._daemon_command: list[str] = []
@@ -182,10 +189,31 @@ class Session:
     def _daemon_killed_by(self) -> signal.Signals | None:
         """Wait until the daemon is gone; the signal that has killed it, None if it ended itself."""
         assert self._daemon is not None
-        while self._daemon.next_line(timeout_s=None) is not None:
-            continue
+        going_on = True
+        while going_on:
+            try:
+                going_on = self._daemon.next_line(self._look_s) is not None
+            except Empty:
+                self._tell_if_slow(self._daemon)
         code = self._daemon.process.wait()
         return signal.Signals(-code) if code < 0 else None
+
+    def _tell_if_slow(self, daemon: Child) -> None:
+        """Say beside a new fault that this computer may be its cause."""
+        try:
+            faults, lost_s, now_s = daemon.new_faults(), self._lost_s(), time.monotonic()
+        except (Refused, OSError):
+            self._look_s = None  # a fake cell that does not answer tells nothing more
+            return
+        # A silence may be noticed after the look that came next.
+        since_s, before_s = self._looks[0]
+        self._looks.append((now_s, lost_s))
+        if faults and lost_s - before_s > SLOW_SHARE * (now_s - since_s):
+            self._complaint.print("\n".join(faults), markup=False)
+            self._complaint.print(too_slow(lost_s - before_s, now_s - since_s), markup=False)
+
+    def _lost_s(self) -> float:
+        return float(self._control.request("truth")["truth"]["lost_s"])
 
     def _calibrate(self) -> int:
         if not self._demo.procedures:
@@ -250,7 +278,7 @@ class Session:
         self._complaint.print(f"not good: {why_not_good(result)}", style="bold", markup=False)
         for fault in faults:
             self._complaint.print(fault, markup=False)
-        lost_s = float(self._control.request("truth")["truth"]["lost_s"])
+        lost_s = self._lost_s()
         passed_s = time.monotonic() - self._begun_s
         if lost_s > SLOW_SHARE * passed_s:
             self._complaint.print(too_slow(lost_s, passed_s), markup=False)
