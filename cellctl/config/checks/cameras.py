@@ -11,9 +11,9 @@ _PRODUCER = ".cti"
 program finds it; drivers that load producers have them in a setting of this name."""
 _LONG_SETTLE_S = 3.0
 """Lamps of metal halide take longer to their full light, and nobody switches these for a look."""
-_LEAST_HOLE_PX = 15.0
-"""An ellipse of a smaller radius is not measured to the hundredths of a pixel that a part needs;
-holes in millimetres are as small."""
+LEAST_HOLE_PX = 15.0
+"""Radius; the smallest holes that the demonstration measures have 16 px, and in millimetres most
+holes are smaller than this."""
 
 
 def camera_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
@@ -35,9 +35,8 @@ def camera_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
             said = "in seconds, and each look waits so long for the lamp: LEDs take milliseconds"
             yield ConfigIssue(f"{path}.light.settle_s", f"{device.light.settle_s:g}", said)
         wanted = device.auto_exposure
-        if wanted is not None and wanted.hole_px[1] < _LEAST_HOLE_PX:
+        if wanted is not None and wanted.hole_px[1] < LEAST_HOLE_PX:
             said = (
-                "radii in pixels of the image, and not in mm: right if the holes are so small in "
-                f"it; a radius below {_LEAST_HOLE_PX:g} px is measured badly"
+                "radii in pixels of the image, and not in mm: right if the holes are so small in it"
             )
             yield ConfigIssue(f"{path}.auto_exposure.hole_px", str(list(wanted.hole_px)), said)

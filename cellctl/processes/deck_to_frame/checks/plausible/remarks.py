@@ -10,6 +10,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.deck_to_frame.checks.hole_sizes import hole_size_remarks
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing, read_drawings
 from cellctl.processes.deck_to_frame.checks.plausible.loads import load_remarks
 from cellctl.processes.deck_to_frame.checks.plausible.stored import (
@@ -81,6 +82,7 @@ def recipe_remarks(
     yield from _corrections(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
+    yield from hole_size_remarks(cell, recipe, key, folder)
     yield from load_remarks(cell, recipe, key)
     yield from _taught_again(cell, recipe, folder)
     yield from unlike_box_remarks(cell, recipe)
