@@ -30,11 +30,12 @@ def server() -> Iterator[PostgresServer]:
     if reason := postgres.missing():
         pytest.skip(reason)
     # Not below a folder of pytest, into which the server's user may not look.
-    with tempfile.TemporaryDirectory(prefix="cellctl-fleet-") as name:
+    place = postgres.quick_place()
+    with tempfile.TemporaryDirectory(prefix="cellctl-fleet-", dir=place) as name:
         Path(name).chmod(0o755)
         server = started(Path(name))
         yield server
-        server.stop()
+        server.kill()  # in order it would first write down what is thrown away here
 
 
 def started(folder: Path) -> PostgresServer:
