@@ -247,14 +247,16 @@ test-version: venv
 
 # A whole cell keeps real time with one test at a time only: without workers, and after the others.
 test-cell: venv
-	$(BIN)/pytest tests/cell -m "not long" --durations 25
+	$(BIN)/pytest tests/cell -m "not long and not figures" --durations 25
 
 # Accuracy over many draws, sweeps over every key, and of the other sweeps what is not their typical
-# case: what holds for all code, at more seconds than whoever changes one part of it will wait.
+# case, whole cells last: what holds for all code, at more seconds than whoever changes one part of
+# it will wait.
 # `.ci/run` runs them after `make test`.
 test-figures: venv
 	$(BIN)/pytest -n 3 -m "figures and not cell and not long" --durations 25 || \
 		$(BIN)/pytest -m "figures and not cell and not long" $(AGAIN)
+	$(BIN)/pytest tests/cell -m "figures and not long" --durations 10
 
 # New examples, and ten times as many, for every test that draws its own.
 test-explore: venv

@@ -105,6 +105,7 @@ def test_without_a_list_of_signers_nobody_counts(bundle: Path) -> None:
     assert "that says whose signature counts" in refused.stderr
 
 
+@pytest.mark.figures  # makes an environment
 def test_one_that_is_whole_is_built(bundle: Path) -> None:
     """Up to its packages, which this one has not."""
     built = install(bundle, bundle.parent / "signers")

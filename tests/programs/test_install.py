@@ -10,6 +10,7 @@ import pytest
 
 from cellctl import __version__
 from cellctl.records.database.schema_version import SCHEMA_VERSION
+from tests.rigs.sweeps import sweep
 
 ROOT = Path(__file__).parents[2]
 STORE = "var/lib/cellctl/store.sqlite"
@@ -80,8 +81,9 @@ def test_one_command_goes_back_and_another_forth(upgraded: Path) -> None:
         assert (upgraded / "usr/local/bin" / program).exists()
 
 
+@pytest.mark.parametrize("before", sweep(("releases/old", "releases/of-nobody"), ("releases/old",)))
 def test_an_installation_ends_at_the_release_that_it_has_made(
-    upgraded: Path, tmp_path_factory: pytest.TempPathFactory
+    upgraded: Path, tmp_path_factory: pytest.TempPathFactory, before: str
 ) -> None:
     """With its packages there already, for these take minutes."""
     source = tmp_path_factory.mktemp("source")
@@ -92,21 +94,22 @@ def test_an_installation_ends_at_the_release_that_it_has_made(
     (releases / "new").rename(releases / f"{__version__}-newest")
     (releases / f"{__version__}-newest/.complete").touch()
     point = upgraded / "opt/cellctl/current"
-    (upgraded / "opt/cellctl/previous").unlink()
-    for before in ("releases/old", "releases/of-nobody"):
-        point.unlink()
-        point.symlink_to(before)
-        done = subprocess.run(
-            ["sh", source / "systemd/install.sh", "install"],
-            check=False,
-            capture_output=True,
-            text=True,
-            env=os.environ | {"INTO": str(upgraded), "PYTHON": sys.executable},
-        )
-        assert done.returncode == 0, done.stderr
-        assert f"installed {__version__}-newest. Next:" in done.stdout
-        assert current(upgraded) == f"releases/{__version__}-newest"
-        assert os.readlink(upgraded / "opt/cellctl/previous") == "releases/old"
+    if before == "releases/old":
+        (upgraded / "opt/cellctl/previous").unlink()
+    point.unlink()
+    point.symlink_to(before)
+    done = subprocess.run(
+        ["sh", source / "systemd/install.sh", "install"],
+        check=False,
+        capture_output=True,
+        text=True,
+        env=os.environ | {"INTO": str(upgraded), "PYTHON": sys.executable},
+    )
+    assert done.returncode == 0, done.stderr
+    assert f"installed {__version__}-newest. Next:" in done.stdout
+    assert current(upgraded) == f"releases/{__version__}-newest"
+    # A point to nothing says nothing of a release before.
+    assert os.readlink(upgraded / "opt/cellctl/previous") == "releases/old"
     assert (upgraded / "usr/local/bin/cellctl").resolve().exists()
 
 

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 SECOND = "--last-failed", "--last-failed-no-failures", "none", "--most-again", "2"
 FLAKY = """
 from pathlib import Path
@@ -53,6 +55,7 @@ def test_what_fails_again_counts(tmp_path: Path) -> None:
     assert run(tmp_path, *SECOND).returncode == 1
 
 
+@pytest.mark.figures  # two more runs of pytest
 def test_many_are_not_tried_again(tmp_path: Path) -> None:
     write(tmp_path, failing=3)
     assert run(tmp_path).returncode == 1
@@ -61,6 +64,7 @@ def test_many_are_not_tried_again(tmp_path: Path) -> None:
     assert "3 tests have failed, which is too many to try again" in second.stdout
 
 
+@pytest.mark.figures  # two more runs of pytest
 def test_a_run_that_broke_without_a_failed_test_stays_failed(tmp_path: Path) -> None:
     write(tmp_path, failing=0)
     assert run(tmp_path).returncode == 0

@@ -18,6 +18,7 @@ DRIFT_DEG = 0.012
 with it: 0.008° (``base_drift``, ``head_drift``)."""
 
 
+@pytest.mark.figures  # half a minute; `test_part_pose.py`, `test_invalidation.py` find it too
 def test_a_head_whose_robot_was_mastered_anew(own: OwnCell) -> None:
     own.fake().ready()
     own.daemon().ready()

@@ -107,6 +107,7 @@ def test_a_trip_of_the_guard_stops_an_arm_whose_jobs_overhear_it(jobs: OwnCell) 
         moving.daemon.logged("guard has stopped the robot", 10)
 
 
+@pytest.mark.figures  # beside the trip of the guard
 def test_a_frozen_daemon_leaves_the_arm_to_the_watchdog_of_the_coupler(jobs: OwnCell) -> None:
     with in_a_move(jobs) as moving:
         moving.daemon.process.send_signal(signal.SIGSTOP)

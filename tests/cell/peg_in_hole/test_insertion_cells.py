@@ -4,12 +4,15 @@ from pathlib import Path
 
 import pytest
 
+from tests.rigs.sweeps import sweep
 from tests.rigs.whole_cell.own_cell import OwnCell
 
 pytestmark = pytest.mark.timeout(120)
 
 
-@pytest.mark.parametrize(("cell", "seat_mm"), [("connector", 10.0), ("pin", 12.0)])
+@pytest.mark.parametrize(
+    ("cell", "seat_mm"), sweep((("connector", 10.0), ("pin", 12.0)), (("connector", 10.0),))
+)
 def test_the_daemon_finds_every_device(tmp_path: Path, cell: str, seat_mm: float) -> None:
     own = OwnCell.make(tmp_path, f"insertion-{cell}")
     try:

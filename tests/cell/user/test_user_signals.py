@@ -101,6 +101,7 @@ def test_idle_and_hung_up(visited: OwnCell) -> None:
     ends_in_order(daemon)
 
 
+@pytest.mark.figures  # beside Ctrl-C while it connects and at rest
 def test_while_heads_move(visited: OwnCell) -> None:
     slow = "speed_percent = 5\nlinear_speed_mm_s = 250.0"
     visited.change("linear_speed_mm_s = 250.0", slow)  # of both robots that carry a head

@@ -57,6 +57,7 @@ def bare_cell_file(folder: Path) -> Path:
     return path
 
 
+@pytest.mark.figures  # imports all; `make imports` reads the same from the sources
 def test_every_module_of_the_core_imports_without_a_process() -> None:
     run = subprocess.run(
         [sys.executable, "-c", IMPORT_EVERYTHING],

@@ -152,6 +152,7 @@ async def test_a_server_of_frames_cannot(tmp_path: Path) -> None:
     await server.stop()
 
 
+@pytest.mark.figures  # as every setting does
 async def test_an_exposure_that_was_set_outlasts_a_lost_camera(
     producer: Path, plate: Plate, tmp_path: Path
 ) -> None:

@@ -216,6 +216,7 @@ def before_a_board(world: DeckOnFrame) -> None:
     world.commands()["place_chessboard"](head="head_1")
 
 
+@pytest.mark.figures  # renders for both
 async def test_a_head_of_the_cell_shows_what_a_frame_server_would(
     producer: Path, cameras: Path
 ) -> None:

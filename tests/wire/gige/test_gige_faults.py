@@ -89,6 +89,7 @@ async def test_a_camera_of_another_subnet(tmp_path: Path, producer: Path) -> Non
     assert "192.168.10.1/24" in said
 
 
+@pytest.mark.figures  # compiles a producer of its own
 async def test_a_camera_out_of_reach_whose_producer_says_no_address(tmp_path: Path) -> None:
     producer = build_producer(tmp_path, "-O0", interface_xml=SOURCES / "module.xml")
     with network(tmp_path, [FakeCamera(LEFT, address="10.0.0.5"), FakeCamera(RIGHT)]):
@@ -233,6 +234,7 @@ async def test_a_damaged_image_is_taken_again_and_counted(
         await eye.grab()
 
 
+@pytest.mark.figures  # one more library process
 async def test_a_camera_without_clock_is_not_believed_twice(
     tmp_path: Path, fakes: FakeCameras
 ) -> None:
@@ -248,6 +250,7 @@ async def test_a_camera_without_clock_is_not_believed_twice(
     assert np.array_equal(image.pixels, expected_image(2, 64, 48, "Mono8"))
 
 
+@pytest.mark.figures  # waits for many images that never come
 @pytest.mark.parametrize("fault", [pytest.param("incomplete", marks=FIGURES), "drop"])
 async def test_a_head_whose_right_image_fails_leaves_no_descriptor_of_the_left(
     producer: Path, fakes: FakeCameras, fault: Fault

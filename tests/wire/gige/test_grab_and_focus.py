@@ -94,6 +94,7 @@ def test_a_deep_image_is_saved_as_it_is(cell: Path, fakes: FakeCameras, tmp_path
     assert fakes.opened(LEFT) == 0
 
 
+@pytest.mark.figures  # as a deep image is
 def test_deep_colour_is_saved_with_16_bits(cell: Path, fakes: FakeCameras, tmp_path: Path) -> None:
     text = cell.read_text()
     cell.write_text(text.replace('pixel_format = "Mono12"', 'pixel_format = "BayerRG12"'))
@@ -165,6 +166,7 @@ def test_focus_gives_figures_to_programs(cell: Path, fakes: FakeCameras) -> None
     assert one["figures"]["saturated_share"] == pytest.approx(np.mean(image >= 254))
 
 
+@pytest.mark.figures  # a program of its own
 def test_ctrl_c_ends_focus_and_lets_the_cameras_go(cell: Path, fakes: FakeCameras) -> None:
     program = "from cellctl.cli.app import main; main()"
     live = subprocess.Popen(

@@ -149,6 +149,7 @@ async def test_the_exposure_of_an_older_edition(tmp_path: Path, fakes: FakeCamer
     assert image.exposure.exposure_s == pytest.approx(0.002)
 
 
+@pytest.mark.figures  # compiles a producer of its own
 async def test_an_automatic_exposure_is_switched_off_first(
     tmp_path: Path, fakes: FakeCameras
 ) -> None:
@@ -207,6 +208,7 @@ async def test_chunks_behind_an_image(
         assert image.exposure.gain_db == pytest.approx(6.0)
 
 
+@pytest.mark.figures  # compiles a producer of its own
 async def test_chunks_that_a_camera_does_not_describe(tmp_path: Path, fakes: FakeCameras) -> None:
     """They stay unread, and the image is whole."""
     text = description()
@@ -265,6 +267,7 @@ async def test_a_format_that_is_not_read_is_refused_before_the_first_image(
     assert fakes.opened(LEFT) == 0
 
 
+@pytest.mark.figures  # compiles a producer of its own
 async def test_a_clock_of_ticks(tmp_path: Path, fakes: FakeCameras) -> None:
     producer = build_producer(tmp_path, "-O0", "-DTICKS_PER_S=125000000")
     async with camera(producer) as eye:
