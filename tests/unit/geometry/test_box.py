@@ -8,13 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cellctl.geometry.box import Box
+from tests.rigs.sweeps import examples
 
 BOX = Box.from_mm([1000.0, -500.0, 0.0], [2000.0, 500.0, 800.0])
 coordinate = st.one_of(st.floats(-3.0, 3.0), st.sampled_from([0.0, 0.5, -0.5, 0.8, 1.0, 1.5, 2.0]))
 point = st.tuples(coordinate, coordinate, coordinate).map(np.array)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(point, point)
 def test_a_line_meets_the_box_exactly_when_points_of_it_lie_there(
     begin: np.ndarray, end: np.ndarray
@@ -29,7 +30,7 @@ def test_a_line_meets_the_box_exactly_when_points_of_it_lie_there(
         assert any(BOX.grown(between_m + 1e-9).holds(place) for place in places)
 
 
-@settings(max_examples=40)
+@settings(max_examples=examples(40))
 @given(st.lists(point, min_size=2, max_size=5))
 def test_a_way_meets_the_box_when_one_of_its_lines_does(points: list[np.ndarray]) -> None:
     lines = [BOX.meets(np.array(line)) for line in pairwise(points)]

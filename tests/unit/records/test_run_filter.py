@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from cellctl.records import RunResult, RunStore
 from cellctl.records.run_filter import OPEN, RunFilter
 from cellctl.records.run_list import listed_runs
+from tests.rigs.sweeps import examples
 from tests.unit.records.conftest import start
 
 
@@ -72,7 +73,7 @@ def test_times_are_compared_as_instants(folder: Path) -> None:
         }
     )
 )
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_no_text_is_sql(folder: Path, words: dict[str, str]) -> None:
     wanted = RunFilter(**words)  # type: ignore[arg-type]  # all of these are texts
     every = listed_runs(folder, 9)

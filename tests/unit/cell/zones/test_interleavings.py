@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cellctl.errors.base import CellError
+from tests.rigs.sweeps import examples
 from tests.unit.cell.zones.loop import run
 from tests.unit.cell.zones.rail import SPEED, TICK_S, Rail, at, rail
 
@@ -101,7 +102,7 @@ async def lead_out(cell: Rail) -> None:
     assert cell.inside() == []
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(orders)
 def test_two_arms_in_the_zone_get_out_of_it_whatever_they_are_told(told: list[Order]) -> None:
     async def work() -> None:
@@ -120,7 +121,7 @@ def test_two_arms_in_the_zone_get_out_of_it_whatever_they_are_told(told: list[Or
     run(work())
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(orders)
 def test_no_interleaving_lets_two_arms_share_the_zone(told: list[Order]) -> None:
     async def work() -> None:

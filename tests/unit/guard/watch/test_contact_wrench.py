@@ -11,6 +11,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.watch.contact_wrench import ContactWrenchModel
+from tests.rigs.sweeps import examples
 from tests.unit.guard.watch.wrench import Wrench
 
 
@@ -19,7 +20,7 @@ def nine(rotation: Rotation) -> tuple[float, ...]:
 
 
 @given(st.integers(0, 2**31))
-@settings(max_examples=50)
+@settings(max_examples=examples(50))
 def test_equals_the_formulas_on_arrays(seed: int) -> None:
     rng = np.random.default_rng(seed)
     flange_R_sensor, base_R_flange, sensor_R_wrench = Rotation.random(3, rng=rng)

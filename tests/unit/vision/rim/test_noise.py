@@ -10,6 +10,7 @@ from cellctl.geometry.pose import Array
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.vision.camera.plane_patch import X_AXIS, PlanePatch, plane_basis, plane_patch
 from cellctl.vision.rim.noise import PixelNoise, noise_of, stroke_pattern, surface_lay
+from tests.rigs.sweeps import examples
 from tests.unit.vision.plates import table_1_head
 
 MIDDLE_PX = np.array([1200.0, 1000.0])
@@ -54,7 +55,7 @@ def _offsets(rng: np.random.Generator) -> Array:
     return np.stack([radius * np.cos(angle), radius * np.sin(angle)])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=examples(25), deadline=None)
 @given(seed=st.integers(0, 2**31), height=st.floats(0.1, 8.0))
 def test_weighing_is_the_inverse_of_the_covariance(seed: int, height: float) -> None:
     rng = np.random.default_rng(seed)

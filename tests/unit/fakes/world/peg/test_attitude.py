@@ -9,11 +9,12 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from fakes.world.peg.attitude import axis_of, pose_of
+from tests.rigs.sweeps import examples
 
 _TILT = st.floats(-0.6, 0.6)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=examples(100), deadline=None)
 @given(_TILT, _TILT, st.floats(-3.0, 3.0))
 def test_a_pose_is_its_turn_and_then_its_tilt(x: float, y: float, turn: float) -> None:
     rotation = Rotation.from_rotvec([x, y, 0.0]) * Rotation.from_rotvec([0.0, 0.0, turn])

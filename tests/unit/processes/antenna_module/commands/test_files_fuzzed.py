@@ -24,6 +24,7 @@ from cellctl.processes.antenna_module.commands.turn_file import TurnFile
 from cellctl.processes.antenna_module.faults.connector import PlaneFileInvalid
 from cellctl.processes.antenna_module.vision.plane import read_plane
 from tests.rigs.antenna.plugging_files import teach_content
+from tests.rigs.sweeps import examples
 
 TEACH = teach_content()
 TRIAL = {
@@ -117,7 +118,7 @@ def test_the_file_is_good_before_anything_is_changed(name: str, tmp_path: Path) 
 
 
 @pytest.mark.parametrize("name", FILES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(data=st.data())
 def test_any_value_at_any_place_is_read_or_refused(
     name: str, data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

@@ -15,6 +15,7 @@ from cellctl.processes.antenna_module.connector.connector import (
     read_connector,
 )
 from cellctl.processes.antenna_module.faults.connector import ConnectorFileInvalid
+from tests.rigs.sweeps import examples
 
 FOLDER = Path("config/connectors")
 SHIPPED = sorted(path for kind in ("pins", "holes") for path in FOLDER.glob(f"*-{kind}.toml"))
@@ -124,7 +125,7 @@ VALUES = st.recursive(
 )
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(key=st.sampled_from(sorted(tomllib.loads(TEXT))), value=VALUES)
 def test_any_value_of_any_key_is_read_or_refused(key: str, value: Any) -> None:
     data = tomllib.loads(TEXT) | {key: value}
