@@ -92,6 +92,7 @@ def test_a_robot_that_is_slowed_down_at_its_panel_measures_nothing() -> None:
     np.testing.assert_allclose(cell.robot.reported.translation, before_m, atol=1e-4)
 
 
+@pytest.mark.figures  # six stops more
 def test_a_hold_is_obeyed_before_each_stop() -> None:
     cell = MatingCell.drawn(1, stiffness_n_m=1e6, stop_latency_s=0.05)
     asked: list[tuple[int, int]] = []

@@ -163,6 +163,7 @@ def test_wrong_board_says_what_is_there() -> None:
         detect_views(pairs(1), CalibrationBoard(8, 6, 0.025))
 
 
+@pytest.mark.figures  # beside the wrong board
 def test_chessboard_in_place_of_charuco() -> None:
     with pytest.raises(WrongBoard, match="without a marker"):
         detect_views(pairs(1), CHARUCO)

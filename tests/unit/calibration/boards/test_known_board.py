@@ -44,6 +44,7 @@ def normalised(result: StereoResult) -> float:
     return float(off @ np.linalg.solve(result.head.covariance, off)) / 24
 
 
+@pytest.mark.figures  # accuracy
 def test_few_views_of_a_known_board_do_what_many_of_an_unknown_one_do() -> None:
     known = known_board_from_record(record())
     with_it, without = (

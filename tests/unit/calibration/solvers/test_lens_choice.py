@@ -96,6 +96,7 @@ def test_a_head_gets_no_terms_that_its_lenses_do_not_need() -> None:
     assert chosen_lens(lambda lens: of_head(truth, lens), lambda one: one.held_out_m)[0] is truth
 
 
+@pytest.mark.figures  # accuracy
 def test_a_head_with_the_terms_of_its_lenses_is_as_it_was_drawn() -> None:
     lens = LensModel.RATIONAL
     result = of_head(lens, lens)

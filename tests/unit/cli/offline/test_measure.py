@@ -175,6 +175,7 @@ def test_z_into_the_part_has_to_be_stated(folder: Path) -> None:
     assert run(folder, features="down.toml").exit_code == 0
 
 
+@pytest.mark.figures  # as z into the part is
 def test_an_outward_axis_into_the_part_is_named(folder: Path) -> None:
     text = (folder / "plate.toml").read_text()
     (folder / "inward.toml").write_text("outward_axis = [0.0, 0.0, -1.0]\n" + text)

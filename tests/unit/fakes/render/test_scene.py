@@ -120,6 +120,7 @@ def test_opencv_finds_the_chessboard_where_it_is() -> None:
         assert distance.max() < 0.15
 
 
+@pytest.mark.figures  # `test_charuco.py` reads it in images as well
 def test_opencv_reads_the_charuco_board() -> None:
     board = api.SceneCharucoBoard(
         api.facing_pose(tilt_deg=(5.0, 6.0, 0.0)),

@@ -178,6 +178,7 @@ def _mesh(name: str, points: np.ndarray) -> str:
     return f'<mesh name="{name}" vertex="{text}"/>'
 
 
+@pytest.mark.figures  # seconds of contact; `test_mujoco_contact.py` compares one
 @pytest.mark.parametrize(
     ("offset_mm", "findings"),
     [

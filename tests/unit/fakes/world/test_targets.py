@@ -16,6 +16,7 @@ def test_flange_targets_lie_on_their_ring(scenario: DeckScenario) -> None:
     np.testing.assert_allclose(radius, 0.2, atol=1.5e-3)
 
 
+@pytest.mark.figures  # many draws
 def test_noise_averages_out_over_frames(scenario: DeckScenario) -> None:
     world = DeckOnFrame(scenario, 1)
     for frames in (1, 25):

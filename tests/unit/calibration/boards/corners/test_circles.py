@@ -116,6 +116,7 @@ def test_a_covered_circle_is_no_grid() -> None:
     assert detect_corners(image, GRID) is None
 
 
+@pytest.mark.figures  # beside the wrong board
 def test_a_chessboard_in_place_of_circles_is_named() -> None:
     image = draw(BOARD, view(0))
     with pytest.raises(WrongBoard, match="shows a chessboard, not the 9 x 7 circle grid"):

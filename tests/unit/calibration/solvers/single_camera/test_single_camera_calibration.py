@@ -89,6 +89,7 @@ def model_of(camera: Array) -> CameraModel:
     return CameraModel(np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1.0]]), camera[4:])
 
 
+@pytest.mark.figures  # accuracy
 def test_a_connector_is_measured_to_a_fraction_of_a_micrometre(
     results: list[SingleCameraResult],
 ) -> None:

@@ -81,6 +81,7 @@ def test_without_a_frame_there_is_nothing_to_touch(scenario: DeckScenario) -> No
     assert world.payload.peak_contact_force_n == 0
 
 
+@pytest.mark.figures  # beside no force before contact
 def test_deck_beside_the_frame_touches_nothing(scenario: DeckScenario) -> None:
     world = hovering(DeckOnFrame(scenario, 1), 30e-3)
     deck_to(world, above(world, 30e-3, x_m=1.2), 0.2, 1.0)

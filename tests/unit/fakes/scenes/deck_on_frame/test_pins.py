@@ -119,6 +119,7 @@ def test_beyond_the_chamfer_the_deck_stands_on_the_pins(scenario: DeckScenario) 
     assert np.hypot(*force[:2]) < 0.1
 
 
+@pytest.mark.figures  # seconds of contact
 def test_friction_holds_the_deck_back_on_its_way_in(scenario: DeckScenario) -> None:
     payload = hanging(scenario, friction=0.15)
     settled(payload, at(0.08, 0.0, 1.5))

@@ -123,6 +123,7 @@ def test_motions_start_late_by_what_they_may(scenario: DeckScenario) -> None:
     assert 9.5e-3 < max(late_s) <= 10.001e-3
 
 
+@pytest.mark.figures  # many draws
 def test_stops_are_early_and_late_by_what_they_may(scenario: DeckScenario) -> None:
     plain, arm = arm_of(scenario), arm_of(with_scales(scenario, stop_jitter=1.0))
     late_s = []

@@ -123,6 +123,7 @@ def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
     assert not world.arm.moving(world.world.time_s)
 
 
+@pytest.mark.figures  # beside the frame that stands too high
 def test_a_deck_that_is_thicker_than_stated_meets_its_frame_slowly() -> None:
     # The bound of `docs/mating.md`, "Over the station": what is pressed until the arm stands.
     world = MatingCell.drawn(9, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
