@@ -32,6 +32,7 @@ from benchmarks.metrology.fake_station import SCENARIO
 from benchmarks.metrology.figures import HoleErrors
 from benchmarks.metrology.looks import measure
 from benchmarks.metrology.loop import Setting
+from cellctl.vision import measure as pair_measure
 from cellctl.vision.features.countersink import Countersink
 from cellctl.vision.features.pin import Pin
 from cellctl.vision.features.thread import Thread
@@ -135,6 +136,11 @@ TERMS = (
         ((selection, "_of_uneven_inside", lambda _, walled: walled),),
     ),
     Term("half level of a bent edge", ("disc", *WALLS), ((shape, "_bend_px", always(0.0)),)),
+    Term(
+        "movement and focus of the image",
+        EVERYTHING,
+        ((pair_measure, "_SPREAD_ROUNDS", 0),),
+    ),
     Term(
         "cone: radial slope",
         (*CONES, "deck"),

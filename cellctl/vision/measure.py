@@ -16,7 +16,6 @@ from cellctl.vision.camera.image_checks import check_pair
 from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.camera.triangulation import epipolar_distances_px, triangulate
 from cellctl.vision.features.hole import Hole
-from cellctl.vision.features.known_kinds import kind_of
 from cellctl.vision.holes.arrangements import arrangements
 from cellctl.vision.holes.correspondence import (
     Assignment,
@@ -28,7 +27,9 @@ from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper_baseline import measure_pair_by_paper
 from cellctl.vision.rim.image_scale import with_image_scales
-from cellctl.vision.rim.roi import RimRoi
+from cellctl.vision.rim.roi import LocatedRim, RimRoi
+from cellctl.vision.rim.shown_spread import image_spread
+from cellctl.vision.rim.spread import ImageSpread
 from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
 
 SEARCH_RADIUS_M = 12e-3
@@ -46,6 +47,11 @@ _SIZE_AGREEMENT = 0.02
 """Largest difference of the diameters in both images, relative."""
 _MAX_BLUR_PX = 2.5
 """Blur of a rim (standard deviation) beyond which its image counts as out of focus."""
+_SPREAD_ROUNDS = 3
+"""Each finds what the fits before it had left of a spread, to first order; one is mostly
+enough."""
+_LEAST_GAIN = 30.0
+"""Fall of the information criterion that no spread shows by chance in all rims together."""
 _SAME_PLACE_PX = 1.0
 """Coarse places nearer to each other than this, in every hole, are the same assignment."""
 _MAX_TRIED = 10
@@ -117,25 +123,12 @@ def _measure(
     # A wrong arrangement ends here, before the expensive fits. Edges alone are less exact, hence
     # the allowance.
     check_layout(holes, located.positions_m, tolerance_m + _COARSE_M)
-    measured: dict[int, RimPair] = {}
     all_rois = [
         rim_rois(images, hole, place_m, located.normal)
         for hole, place_m in zip(holes, located.positions_m, strict=True)
     ]
-    blurs: list[tuple[float, float]] = []
-    # Rims that show the blur of the images come first. The others are given it: the turns of a
-    # thread, for one, look like blur themselves.
-    for index in sorted(range(len(holes)), key=lambda index: not kind_of(holes[index]).lends_blur):
-        hole = holes[index]
-        rois = all_rois[index]
-        known = np.median(blurs, axis=0) if blurs else None
-        blur_px = None if known is None else (float(known[0]), float(known[1]))
-        rims = measure_rims(rois, located.places[index], blur_px)
-        if kind_of(hole).lends_blur:
-            blurs.append((rims.left.blur_px, rims.right.blur_px))
-        _check_sharpness(rois, rims)
-        measured[index] = rims
-    pairs = with_image_scales([measured[index] for index in range(len(holes))])
+    measured = _rims(all_rois, located.places)
+    pairs = with_image_scales(measured)
     for rois, rims in zip(all_rois, pairs, strict=True):
         refuse_too_uncertain(rois, rims)
     result = PairMeasurement(
@@ -146,11 +139,80 @@ def _measure(
     return result
 
 
-def _check_sharpness(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
-    for roi, rim in zip(rois, (rims.left, rims.right), strict=True):
-        if rim.blur_px > _MAX_BLUR_PX:
+def _rims(
+    rois: Sequence[tuple[RimRoi, RimRoi]], places: Sequence[tuple[LocatedRim, LocatedRim]]
+) -> list[RimPair]:
+    """All rims of a pair, with the spreads of its images that they show together."""
+    spreads = (ImageSpread(), ImageSpread())
+    rims = _rims_spread(rois, places, spreads)
+    for _ in range(_SPREAD_ROUNDS):
+        likely = _likely_spreads(spreads, rois, rims)
+        if likely[0] is spreads[0] and likely[1] is spreads[1]:
+            break
+        trial = _rims_spread(rois, places, likely)
+        if not _explained_better(trial, rims):
+            break
+        spreads, rims = likely, trial
+    return rims
+
+
+def _likely_spreads(
+    before: tuple[ImageSpread, ImageSpread],
+    rois: Sequence[tuple[RimRoi, RimRoi]],
+    rims: Sequence[RimPair],
+) -> tuple[ImageSpread, ImageSpread]:
+    shown = [pair.shown for pair, (roi, _) in zip(rims, rois, strict=True) if roi.kind.lends_blur]
+    left, right = (image_spread(before[image], [one[image] for one in shown]) for image in (0, 1))
+    return left, right
+
+
+def _explained_better(trial: Sequence[RimPair], rims: Sequence[RimPair]) -> bool:
+    """By most of the rims that have one edge then, and by more than chance.
+
+    Light on a wall or a broken edge may look like a spread, but leaves no other rim better
+    explained; and a broken edge is seen beside any spread.
+    """
+    gains = np.array(
+        [
+            before.bic - after.bic
+            for before, after in zip(rims, trial, strict=True)
+            if after.one_edge
+        ]
+    )
+    return bool(gains.size and np.median(gains) > 0.0 and gains.sum() > _LEAST_GAIN)
+
+
+def _rims_spread(
+    all_rois: Sequence[tuple[RimRoi, RimRoi]],
+    places: Sequence[tuple[LocatedRim, LocatedRim]],
+    spreads: tuple[ImageSpread, ImageSpread],
+) -> list[RimPair]:
+    measured: dict[int, RimPair] = {}
+    blurs: list[tuple[float, float]] = []
+    # Rims that show the blur of the images come first. The others are given it: the turns of a
+    # thread, for one, look like blur themselves.
+    for index in sorted(
+        range(len(places)), key=lambda index: not all_rois[index][0].kind.lends_blur
+    ):
+        rois = all_rois[index]
+        known = np.median(blurs, axis=0) if blurs else None
+        blur_px = None if known is None else (float(known[0]), float(known[1]))
+        rims = measure_rims(rois, places[index], blur_px, spreads)
+        if rois[0].kind.lends_blur:
+            blurs.append((rims.left.blur_px, rims.right.blur_px))
+        _check_sharpness(rois, rims, spreads)
+        measured[index] = rims
+    return [measured[index] for index in range(len(places))]
+
+
+def _check_sharpness(
+    rois: tuple[RimRoi, RimRoi], rims: RimPair, spreads: tuple[ImageSpread, ImageSpread]
+) -> None:
+    for roi, rim, spread in zip(rois, (rims.left, rims.right), spreads, strict=True):
+        blur_px = float(np.hypot(rim.blur_px, np.linalg.norm(spread.movement_px)))
+        if blur_px > _MAX_BLUR_PX:
             raise ImageBlurred(
-                f"{roi.side}: the rim of {roi.hole.name} is blurred over {rim.blur_px:.1f} px, "
+                f"{roi.side}: the rim of {roi.hole.name} is blurred over {blur_px:.1f} px, "
                 f"allowed {_MAX_BLUR_PX:.1f} px"
             )
 

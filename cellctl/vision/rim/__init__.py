@@ -15,4 +15,7 @@ The walk of one rim through this package:
    model.
 6. ``stereo_fit`` is the entry: it drives all this, refuses what is no rim, and returns both
    centres in raw pixels with their joint covariance.
+7. ``shown_spread`` tells from all rims of an image whether it has moved or is out of focus
+   (``spread``). If so, ``cellctl.vision.measure`` has all of them fitted anew with that;
+   ``image_scale`` says what all of them leave unexplained.
 """

@@ -5,7 +5,7 @@ countersunk bore lies a cone, whose outer edge need not be in the drawing and, s
 to the camera than the rim, comes closer to the rim on one side.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from cellctl.vision.rim.edges import polar_profile
 from cellctl.vision.rim.noise import median, robust_sigma, surface_lay
 from cellctl.vision.rim.roi import BAND_OUTSIDE_PX, LocatedRim, RimRoi
 from cellctl.vision.rim.shape import RimPixels
+from cellctl.vision.rim.spread import ImageSpread
 
 _BAND_INSIDE_PX, _DENSE_PX = 6.5, 2.5
 _INSIDE_RING_PX, _BESIDE_RING_PX = 3.0, 3.5
@@ -72,8 +73,12 @@ class _Band:
     """Width of the band outside the rim, at evenly spaced azimuths."""
 
 
-def fit_input(roi: RimRoi, located: LocatedRim, ring_px: float | None = None) -> RimFitInput:
+def fit_input(
+    roi: RimRoi, located: LocatedRim, spread: ImageSpread, ring_px: float | None = None
+) -> RimFitInput:
     """Prepare the fit of a located rim; raises ``HoleMissing`` at the border of the image.
+
+    ``spread``: that of the image.
 
     With ``ring_px``, the width of a ring round the rim, the band reaches beyond the ring and
     covers little of what lies inside.
@@ -94,6 +99,7 @@ def fit_input(roi: RimRoi, located: LocatedRim, ring_px: float | None = None) ->
         beyond = np.clip(clear_px - _EDGE_PX, _LEAST_OUTSIDE_PX, BAND_OUTSIDE_PX)
         band = _Band(min(_BAND_INSIDE_PX, 0.5 * radius_px), _DENSE_PX, beyond)
     pixels = _pixels(roi.image, patch, located.point_px, radius_px, band)
+    pixels = replace(pixels, spread=spread)
     return RimFitInput(roi, patch, pixels, located.point_px, centre, radius, median(clear_px))
 
 

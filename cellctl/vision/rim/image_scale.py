@@ -36,8 +36,9 @@ def image_scale(rims: Sequence[Rim]) -> float:
 
 def _scaled(pair: RimPair, left: float, right: float) -> RimPair:
     root = np.sqrt(np.repeat([left, right], 2))
-    return RimPair(
-        replace(pair.left, covariance_px2=pair.left.covariance_px2 * left),
-        replace(pair.right, covariance_px2=pair.right.covariance_px2 * right),
-        pair.covariance_px2 * np.outer(root, root),
+    return replace(
+        pair,
+        left=replace(pair.left, covariance_px2=pair.left.covariance_px2 * left),
+        right=replace(pair.right, covariance_px2=pair.right.covariance_px2 * right),
+        covariance_px2=pair.covariance_px2 * np.outer(root, root),
     )

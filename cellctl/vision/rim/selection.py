@@ -221,10 +221,12 @@ def fit_two_edges(
     given: tuple[RimFitInput, RimFitInput],
     second: SecondEdge,
     blur_px: tuple[float, float] | None,
+    wall_ratio: float | None = None,
 ) -> SelectedFit:
     """Fit a rim in both images at once: with a flat ring, with a cone, or with a wall alone.
 
-    ``blur_px`` is the blur that other rims have shown in these images, where there are any. The
+    ``blur_px`` is the blur that other rims have shown in these images, where there are any, and
+    ``wall_ratio`` the depth of a wall that fits of each image by itself have found. The
     outer edge of a cone lies nearer to the cameras than the rim, so the two images show it in
     different places: that tells a cone from a flat ring.
     """
@@ -242,7 +244,8 @@ def fit_two_edges(
         problem = two_image_problem(pixels, (left, right), light, (blur_sigma, sigma), across_lay)
         return coarse_fit(problem, problem.mean)
 
-    ring, wall = 1.0 + second.width, _WALL_M / given[0].roi.distance_m
+    # A fit does not always come up to a wall from far below its depth.
+    ring, wall = 1.0 + second.width, wall_ratio or _WALL_M / given[0].roi.distance_m
     # Coarse fits are enough to compare the models; only the likeliest one is brought to its end.
     models = [coarse(second.sigma, ring_ratio=ring, ring_slope=slope) for slope in _RING_SLOPES]
     if not given[0].roi.kind.turns:

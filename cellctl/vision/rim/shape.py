@@ -11,14 +11,12 @@ contiguous in memory.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
-from scipy.special import ndtr
 
 from cellctl.geometry.pose import Array
-
-_SQRT_2PI = float(np.sqrt(2.0 * np.pi))
+from cellctl.vision.rim.spread import ImageSpread, across_edge
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -33,6 +31,8 @@ class RimPixels:
     """Shape (n,)."""
     unit_px: float
     """Plane units in a pixel."""
+    spread: ImageSpread = field(default_factory=ImageSpread)
+    """That of the image."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,10 +94,9 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
     """Borders between neighbouring surfaces, from the outermost to the innermost."""
     rim = _circle(pixels, shape.centre, shape.radius)
     by_rim = _by_centre_and_radius(rim, shape)
-    bend_px = _bend_px(pixels, shape)
-    found = [_blurred(rim, by_rim, shape.blur_px, bend_px)]
+    found = [_blurred(pixels, shape, rim, by_rim)]
     if shape.ring_ratio is not None:
-        found.insert(0, _blurred(*_outer_circle(pixels, shape), shape.blur_px, bend_px))
+        found.insert(0, _blurred(pixels, shape, *_outer_circle(pixels, shape)))
     if shape.wall_ratio is not None:
         shrink = 1.0 + shape.wall_ratio
         low = _circle(pixels, shape.centre / shrink, shape.radius / shrink)
@@ -112,8 +111,14 @@ def borders(pixels: RimPixels, shape: RimShape) -> list[Border]:
             np.where(seen, low.direction, rim.direction),
             rim.px,
         )
-        found.append(_blurred(inner, np.where(seen, by_low, by_rim), shape.blur_px, bend_px))
+        found.append(_blurred(pixels, shape, inner, np.where(seen, by_low, by_rim)))
     return found
+
+
+def across_rim(pixels: RimPixels, shape: RimShape) -> tuple[Array, Array]:
+    """Unit vectors in the image across the rim, shape (2, n), and distances over the blur (n,)."""
+    rim = _circle(pixels, shape.centre, shape.radius)
+    return rim.direction, _in_blurs(pixels, shape, rim, rim.distance_px)
 
 
 def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -> Array:
@@ -122,15 +127,15 @@ def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -
     shrink = 1.0 + np.array(ratios)[:, None]
     x, y = pixels.points[:, None] - shape.centre[:, None, None] / shrink
     low_px = (np.sqrt(x * x + y * y) - shape.radius / shrink) * rim.px
-    inner_px = np.maximum(low_px, rim.distance_px) + _bend_px(pixels, shape)
-    return np.asarray(ndtr(inner_px / shape.blur_px))
+    inner_px = np.maximum(low_px, rim.distance_px)
+    return across_edge(_in_blurs(pixels, shape, rim, inner_px), pixels.spread.excess)[0]
 
 
 def outside_circles(pixels: RimPixels, shape: RimShape, radii: Array) -> Array:
     """Share of each pixel outside circles (k,) round the rim's centre, in its plane, (k, n)."""
     rim = _circle(pixels, shape.centre, shape.radius)
     distances_px = rim.distance_px - (radii - shape.radius)[:, None] * rim.px
-    return np.asarray(ndtr((distances_px + _bend_px(pixels, shape)) / shape.blur_px))
+    return across_edge(_in_blurs(pixels, shape, rim, distances_px), pixels.spread.excess)[0]
 
 
 def wall_depth(points: Array, shape: RimShape) -> Array:
@@ -147,13 +152,29 @@ def wall_depth(points: Array, shape: RimShape) -> Array:
     return np.asarray((-b + np.sqrt(b * b - a * c)) / (a * shape.radius))
 
 
-def _bend_px(pixels: RimPixels, shape: RimShape) -> float:
-    """How far the half level of a blurred disc of radius r lies inside its edge: blur²/(2 r).
+def _blur_px(pixels: RimPixels, shape: RimShape, edge: _Circle) -> Array | float:
+    """Standard deviation of the blur across an edge."""
+    if not pixels.spread.moved:
+        return shape.blur_px
+    (move_x, move_y), (x, y) = pixels.spread.movement_px, edge.direction
+    return np.asarray(np.sqrt(shape.blur_px**2 + (move_x * x + move_y * y) ** 2))
 
-    Blur takes more light from the outside of a curved edge than from its inside. Without this the
-    radius would come out too small.
+
+def _bend_px(pixels: RimPixels, shape: RimShape, edge: _Circle) -> Array | float:
+    """How far the half level of a blurred disc of radius r lies inside its edge: variance/(2 r).
+
+    Blur along a curved edge takes more light from its outside than from its inside. Without this
+    the radius would come out too small.
     """
-    return 0.5 * shape.blur_px**2 * pixels.unit_px / shape.radius
+    (move_x, move_y), (x, y) = pixels.spread.movement_px, edge.direction
+    along = move_y * x - move_x * y if pixels.spread.moved else 0.0
+    return 0.5 * (shape.blur_px**2 + along * along) * pixels.unit_px / shape.radius
+
+
+def _in_blurs(pixels: RimPixels, shape: RimShape, edge: _Circle, distances_px: Array) -> Array:
+    """Distances from an edge over its blur, shape (..., n); 0 where it looks half as bright."""
+    bend_px = _bend_px(pixels, shape, edge)
+    return np.asarray((distances_px + bend_px) / _blur_px(pixels, shape, edge))
 
 
 def _circle(pixels: RimPixels, centre: Array, radius: float) -> _Circle:
@@ -185,9 +206,11 @@ def _by_centre_and_radius(circle: _Circle, shape: RimShape) -> Array:
     return derivatives
 
 
-def _blurred(circle: _Circle, by_distance: Array, blur_px: float, bend_px: float) -> Border:
-    z = (circle.distance_px + bend_px) / blur_px
-    density = np.exp(-0.5 * z * z) / (_SQRT_2PI * blur_px)
+def _blurred(pixels: RimPixels, shape: RimShape, circle: _Circle, by_distance: Array) -> Border:
+    blur_px = _blur_px(pixels, shape, circle)
+    z = _in_blurs(pixels, shape, circle, circle.distance_px)
+    outside, by_z = across_edge(z, pixels.spread.excess)
+    density = by_z / blur_px
     by_shape = by_distance * density
-    by_shape[3] = -z * density
-    return Border(np.asarray(ndtr(z)), by_shape, circle.direction * density)
+    by_shape[3] = -z * density * (shape.blur_px / blur_px)
+    return Border(outside, by_shape, circle.direction * density)

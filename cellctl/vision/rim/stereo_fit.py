@@ -17,6 +17,8 @@ from cellctl.vision.rim.selection import (
     fit_two_edges,
 )
 from cellctl.vision.rim.shape import RimShape
+from cellctl.vision.rim.shown_spread import ShownSpread, shown_spread
+from cellctl.vision.rim.spread import ImageSpread
 
 _LEAST_RING_PX = 2.0
 """Width that the band of pixels allows for a ring, however narrow it is thought to be."""
@@ -58,12 +60,19 @@ class RimPair:
     right: Rim
     covariance_px2: Array
     """Joint covariance of both points, left first, shape (4, 4)."""
+    shown: tuple[ShownSpread, ShownSpread]
+    """What the fits of each image by itself show of its spread, left and right."""
+    bic: float
+    """As ``RimFit.bic``, of both these fits together."""
+    one_edge: bool
+    """Whether these fits are the result: a second edge looks like a spread."""
 
 
 def measure_rims(
     rois: tuple[RimRoi, RimRoi],
     located: tuple[LocatedRim, LocatedRim],
     blur_px: tuple[float, float] | None,
+    spreads: tuple[ImageSpread, ImageSpread],
 ) -> RimPair:
     """Measure a located rim, left image first; its plane must be known to about a degree.
 
@@ -71,7 +80,7 @@ def measure_rims(
     ``HoleMissing`` when a fit is no measurement of this rim.
     """
     kind = rois[0].kind
-    given = _fit_inputs(rois, located, kind.first_ring_px)
+    given = _fit_inputs(rois, located, spreads, kind.first_ring_px)
     fits = fit_single_image(given[0]), fit_single_image(given[1])
     # Both single fits come first even where a second edge is likely: they are the evidence by which
     # the kind decides, and for a rim with one edge they are already the result.
@@ -79,8 +88,14 @@ def measure_rims(
     if second is None:
         return _from_single_fits(given, fits)
     ring_px = max(_LEAST_RING_PX, second.width * given[0].radius / given[0].patch.unit_px)
-    given = _fit_inputs(rois, located, ring_px)
-    return _from_joint_fit(given, fit_two_edges(given, second, blur_px))
+    given = _fit_inputs(rois, located, spreads, ring_px)
+    return _from_joint_fit(given, fit_two_edges(given, second, blur_px, _wall_ratio(fits)), fits)
+
+
+def _wall_ratio(fits: tuple[SelectedFit, SelectedFit]) -> float | None:
+    """The deeper of the walls that single fits have found; None where they found none."""
+    ratios = (selected.fit.shapes[0].wall_ratio for selected in fits)
+    return max((ratio for ratio in ratios if ratio), default=None)
 
 
 def refuse_too_uncertain(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
@@ -97,9 +112,16 @@ def refuse_too_uncertain(rois: tuple[RimRoi, RimRoi], rims: RimPair) -> None:
 
 
 def _fit_inputs(
-    rois: tuple[RimRoi, RimRoi], located: tuple[LocatedRim, LocatedRim], ring_px: float | None
+    rois: tuple[RimRoi, RimRoi],
+    located: tuple[LocatedRim, LocatedRim],
+    spreads: tuple[ImageSpread, ImageSpread],
+    ring_px: float | None,
 ) -> tuple[RimFitInput, RimFitInput]:
-    return fit_input(rois[0], located[0], ring_px), fit_input(rois[1], located[1], ring_px)
+    left, right = (
+        fit_input(roi, place, spread, ring_px)
+        for roi, place, spread in zip(rois, located, spreads, strict=True)
+    )
+    return left, right
 
 
 def _from_single_fits(
@@ -110,10 +132,22 @@ def _from_single_fits(
         _rim(one, with_covariance(chosen.fit, chosen.spread), 0, RADIUS_TOLERANCE)
         for one, chosen in zip(given, fits, strict=True)
     )
-    return RimPair(left, right, joint_covariance(left.covariance_px2, right.covariance_px2))
+    joint = joint_covariance(left.covariance_px2, right.covariance_px2)
+    return RimPair(left, right, joint, *_singly(fits), one_edge=True)
 
 
-def _from_joint_fit(given: tuple[RimFitInput, RimFitInput], chosen: SelectedFit) -> RimPair:
+def _singly(
+    fits: tuple[SelectedFit, SelectedFit],
+) -> tuple[tuple[ShownSpread, ShownSpread], float]:
+    left, right = (selected.fit for selected in fits)
+    return (shown_spread(left), shown_spread(right)), left.bic() + right.bic()
+
+
+def _from_joint_fit(
+    given: tuple[RimFitInput, RimFitInput],
+    chosen: SelectedFit,
+    singles: tuple[SelectedFit, SelectedFit],
+) -> RimPair:
     """One fit of both images: what they share makes the errors of both points hang together."""
     rated = with_covariance(chosen.fit, chosen.spread)
     left, right = (
@@ -124,7 +158,7 @@ def _from_joint_fit(given: tuple[RimFitInput, RimFitInput], chosen: SelectedFit)
         part = slice(2 * index, 2 * index + 2)
         jacobian[part, part] = one.patch.px_by_point(shape.centre)
     joint = jacobian @ rated.covariance[:4, :4] @ jacobian.T + np.eye(4) * _FLOOR_PX**2
-    return RimPair(left, right, joint)
+    return RimPair(left, right, joint, *_singly(singles), one_edge=False)
 
 
 def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float) -> Rim:

@@ -7,6 +7,7 @@ import pytest
 
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.rim.image_scale import image_scale, with_image_scales
+from cellctl.vision.rim.shown_spread import ShownSpread
 from cellctl.vision.rim.stereo_fit import Rim, RimPair
 
 COVARIANCE = np.array([[4e-4, 1e-4], [1e-4, 2e-4]])
@@ -18,7 +19,9 @@ def pair(left: float, right: float) -> RimPair:
     joint = np.zeros((4, 4))
     joint[:2, :2] = joint[2:, 2:] = COVARIANCE
     joint[0, 2] = joint[2, 0] = 5e-5
-    return RimPair(replace(RIM, misfit=left), replace(RIM, misfit=right), joint)
+    shown = ShownSpread(np.zeros(3), np.ones(3))
+    rims = replace(RIM, misfit=left), replace(RIM, misfit=right)
+    return RimPair(*rims, joint, (shown, shown), 0.0, one_edge=True)
 
 
 def test_good_images_change_nothing() -> None:

@@ -1,10 +1,13 @@
 """Borders at a rim: their derivatives, and the curvature that blur adds."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.shape import RimPixels, RimShape, borders, outside_walls, wall_depth
+from cellctl.vision.rim.spread import ImageSpread
 
 UNIT_PX = 1.0 / 3600.0
 RADIUS = 21.5 * UNIT_PX
@@ -26,10 +29,20 @@ def pixels_round(centre: Array) -> RimPixels:
     return RimPixels(points, jacobian, np.zeros(columns.size), UNIT_PX)
 
 
+SPREADS = {
+    "as the lens has it": ImageSpread(),
+    "moved": ImageSpread(np.array([0.5, -0.7])),
+    "out of focus": ImageSpread(excess=-0.8),
+}
+
+
+@pytest.mark.parametrize("spread", SPREADS.values(), ids=SPREADS)
 @pytest.mark.parametrize("name", SHAPES)
-def test_derivatives_of_the_borders_are_those_of_their_values(name: str) -> None:
+def test_derivatives_of_the_borders_are_those_of_their_values(
+    name: str, spread: ImageSpread
+) -> None:
     shape = SHAPES[name]
-    pixels = pixels_round(shape.centre)
+    pixels = replace(pixels_round(shape.centre), spread=spread)
     exact = borders(pixels, shape)
     # The small shift of the half level by blur is taken for constant in the derivatives.
     tolerance = 0.06 * max(float(np.abs(border.by_shape[2]).max()) for border in exact) * UNIT_PX
@@ -44,9 +57,11 @@ def test_derivatives_of_the_borders_are_those_of_their_values(name: str) -> None
             assert np.abs(numeric - border.by_shape[index]).max() * scale < tolerance
 
 
-def test_the_outside_of_a_disc_is_what_a_blurred_disc_leaves() -> None:
+@pytest.mark.parametrize("spread", SPREADS.values(), ids=SPREADS)
+def test_the_outside_of_a_disc_is_what_a_blurred_disc_leaves(spread: ImageSpread) -> None:
+    """Light that a spread moves about is not lost."""
     shape = SHAPES["bore"]
-    (rim,) = borders(pixels_round(shape.centre), shape)
+    (rim,) = borders(replace(pixels_round(shape.centre), spread=spread), shape)
     area_px2 = float(np.sum(1.0 - rim.outside))
     assert area_px2 == pytest.approx(np.pi * 21.5**2, rel=2e-4)
 
