@@ -29,6 +29,15 @@ DECK_WEEK = (
 )
 DECK_WEEK_PASSES = (
     Undecided(
+        deck(
+            _WAY,
+            _WAY.replace("84.0", "94.0"),
+            "robots.main.ways.1",
+            "the way from 'home' to 'deck_measure' leads over other joints",
+        ),
+        "another way back: both may be free, which the model of the cell tells",
+    ),
+    Undecided(
         deck(_WAY, "", "robots.main.ways.0", "back from 'deck_measure' to 'home' the arm goes"),
         "a way in one direction: the straight one back may be free",
     ),

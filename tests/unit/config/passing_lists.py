@@ -25,6 +25,12 @@ _LEAST, _MOST = "robots.*.settings.joints_min_deg", "robots.*.settings.joints_ma
 
 LISTS = (
     Kind(
+        "a way back that is not the way there: `cellctl check --moves` holds both against the "
+        "model of the cell",
+        (*_near("robots.*.ways.via_deg"), *_at("robots.*.ways.via_deg", "4 5", "/10")),
+        remarked=True,
+    ),
+    Kind(
         "the same angle, written otherwise",
         (
             *_at("robots.*.settings.dh", "20", "sign"),

@@ -60,17 +60,10 @@ def _copied_ways(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
 
 
 def arm_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Ways that lead one way only, and arrivals that are called so from far off."""
+    """Ways without their way back or with another one, and arrivals that are called so from far
+    off."""
     for name, robot in cell.robots.items():
-        stated = {(way.start, way.end) for way in robot.ways}
-        for index, way in enumerate(robot.ways):
-            if (way.end, way.start) not in stated:
-                said = (
-                    f"back from {way.end!r} to {way.start!r} the arm goes straight in the joints; "
-                    "right if that is free (`cellctl check --moves`)"
-                )
-                written = f"{way.start!r} to {way.end!r}"
-                yield ConfigIssue(f"robots.{name}.ways.{index}", written, said)
+        yield from _ways_back(f"robots.{name}.ways", robot)
         for key, most in (("arrival_tolerance_mm", 1.0), ("arrival_tolerance_deg", 0.5)):
             value = robot.settings.get(key, 0.0)
             if value > most:
@@ -78,6 +71,25 @@ def arm_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
                     f"an arm that ends so far from its target counts as arrived; {most:g} is much"
                 )
                 yield ConfigIssue(f"robots.{name}.settings.{key}", f"{value:g}", said)
+
+
+def _ways_back(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
+    stated = {(way.start, way.end): way for way in robot.ways}
+    for index, way in enumerate(robot.ways):
+        back = stated.get((way.end, way.start))
+        said = ""
+        if back is None:
+            said = (
+                f"back from {way.end!r} to {way.start!r} the arm goes straight in the joints; "
+                "right if that is free (`cellctl check --moves`)"
+            )
+        elif robot.ways.index(back) < index and back.via_deg != way.via_deg[::-1]:
+            said = (
+                f"the way from {way.end!r} to {way.start!r} leads over other joints: a slip in one "
+                "of them, or right if both are free (`cellctl check --moves`)"
+            )
+        if said:
+            yield ConfigIssue(f"{path}.{index}", f"{way.start!r} to {way.end!r}", said)
 
 
 def _joint_bounds(path: str, settings: dict[str, Any]) -> Iterator[ConfigIssue]:
