@@ -94,13 +94,14 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     fast_m_s = touch_speed_m_s(
         task.cell.stiffness_n_m, task.cell.dead_time_s, task.limits.insertion_n / 2
     )
-    above_m = height_uncertainty_m + _OVER_PLANE_M
-    reach_m = 2 * height_uncertainty_m + _OVER_PLANE_M + _BEYOND_M
+    # A face that is tilted by as much as is allowed is still met from above, as by the touches that
+    # follow.
+    above_m = height_uncertainty_m + _OVER_PLANE_M + radius_m * float(np.tan(_MOST_TILT_RAD))
+    reach_m = above_m + height_uncertainty_m + _BEYOND_M
     await touching.over_first(places[0], plan.datum_depth_m - above_m)
     touches = [await touching.at(places[0], reach_m, speed_m_s=fast_m_s)]
     first_m = _depth_m(touches[0])
     for angle_rad, place in zip(ANGLES_RAD[1:], places[1:], strict=True):
-        # A face that is tilted by as much as is allowed is still met from above.
         apart_m = float(np.linalg.norm(place - places[0]))
         above_m = _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))
         await touching.over_next(float(angle_rad), radius_m, first_m - above_m)

@@ -49,6 +49,16 @@ def test_a_tilted_face_is_a_fault() -> None:
         touched(plate((0.08, 0.0)))
 
 
+@pytest.mark.parametrize("slope", [(-0.05, 0.0), (0.0, -0.05)])
+def test_a_tilted_face_is_met_by_touches_alone(slope: tuple[float, float]) -> None:
+    """It is as high as it may be, and rises towards the first place by 2.9 degrees."""
+    motions, higher_m = Ways(), 3e-3
+    motions.raised_m = higher_m
+    motions.slope = np.array(slope)
+    asyncio.run(touch_face(motions, motions.task, FacePlan(20e-3, higher_m, PANEL_M)))
+    assert motions.met_early == 0
+
+
 class NothingThere(KinematicMotions):
     async def touch(
         self,
@@ -75,10 +85,12 @@ class Ways(KinematicMotions):
     def __init__(self, stopped_at: int | None = None) -> None:
         super().__init__(pin(), Truth(FAR, np.zeros(2)), np.random.default_rng(0))
         self.places_m: list[NDArray[np.float64]] = []
+        self.met_early = 0
+        self.raised_m, self.slope = 0.0, np.zeros(2)
         self._stopped_at = stopped_at
 
     def _depth_m(self) -> float:
-        return PANEL_M
+        return PANEL_M - self.raised_m + float(self.slope @ self.position_m[:2])
 
     async def move_free(
         self,
@@ -88,6 +100,7 @@ class Ways(KinematicMotions):
     ) -> ContactMotion:
         moved = await super().move_free(task_position_tip_m, task_rotation_tip_rad, speed_m_s)
         self.places_m.append(moved.last.task_position_tip_m[:2])
+        self.met_early += float(moved.last.task_position_tip_m[2]) > self._depth_m()
         stopped = len(self.places_m) == self._stopped_at
         return ContactMotion(Ended.FORCE if stopped else moved.ended, moved.samples)
 
