@@ -100,7 +100,7 @@ def _through(own: OwnCell, camera: Camera) -> None:
     run = person.status()["run"]["number"]
     camera.take("runs", "history")
     camera.take("history", f"history/{run}")
-    _procedure(camera)
+    _procedure(own, camera)
     _fault(own, camera)
     for screen in ("calibration", "maintenance", "line", "health"):
         name = {"maintenance": "procedures"}.get(screen, screen)
@@ -112,9 +112,13 @@ def _presses(status: dict[str, Any]) -> bool:
     return any(value is not None and abs(value) > 5.0 for value in forces)
 
 
-def _procedure(camera: Camera) -> None:
+def _procedure(own: OwnCell, camera: Camera) -> None:
     person = camera.person
     person.to_idle()
+    with own.control() as control:
+        # A calibration moves arms through the room of the deck, and refuses one that is gripped.
+        control.request("present", frame=False, deck=False)
+        control.request("place_chessboard", head="head_1", number=1)
     person.command("mode", mode="maintenance")
     camera.take("set-up", "maintenance/101")
     person.command("procedure", number=101, serial="PROCEDURE-101")
@@ -123,6 +127,8 @@ def _procedure(camera: Camera) -> None:
     person.command("stop", "STOPPED")
     camera.take("result", "maintenance/101")
     person.to_idle()
+    with own.control() as control:
+        control.request("remove_boards")
     person.command("mode", mode="production")
 
 
