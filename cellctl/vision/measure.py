@@ -28,7 +28,7 @@ from cellctl.vision.measurement import HoleMeasurement, Method, PairMeasurement
 from cellctl.vision.paper_baseline import measure_pair_by_paper
 from cellctl.vision.rim.image_scale import with_image_scales
 from cellctl.vision.rim.roi import LocatedRim, RimRoi
-from cellctl.vision.rim.shown_spread import image_spread
+from cellctl.vision.rim.shown_spread import image_spread, shown_spread
 from cellctl.vision.rim.spread import ImageSpread
 from cellctl.vision.rim.stereo_fit import RimPair, measure_rims, refuse_too_uncertain
 
@@ -161,8 +161,11 @@ def _likely_spreads(
     rois: Sequence[tuple[RimRoi, RimRoi]],
     rims: Sequence[RimPair],
 ) -> tuple[ImageSpread, ImageSpread]:
-    shown = [pair.shown for pair, (roi, _) in zip(rims, rois, strict=True) if roi.kind.lends_blur]
-    left, right = (image_spread(before[image], [one[image] for one in shown]) for image in (0, 1))
+    telling = [pair for pair, (roi, _) in zip(rims, rois, strict=True) if roi.kind.lends_blur]
+    left, right = (
+        image_spread(before[image], [shown_spread(pair.singles[image]) for pair in telling])
+        for image in (0, 1)
+    )
     return left, right
 
 
@@ -174,7 +177,7 @@ def _explained_better(trial: Sequence[RimPair], rims: Sequence[RimPair]) -> bool
     """
     gains = np.array(
         [
-            before.bic - after.bic
+            sum(fit.bic() for fit in before.singles) - sum(fit.bic() for fit in after.singles)
             for before, after in zip(rims, trial, strict=True)
             if after.one_edge
         ]

@@ -98,8 +98,7 @@ def fit_input(
         # rim.
         beyond = np.clip(clear_px - _EDGE_PX, _LEAST_OUTSIDE_PX, BAND_OUTSIDE_PX)
         band = _Band(min(_BAND_INSIDE_PX, 0.5 * radius_px), _DENSE_PX, beyond)
-    pixels = _pixels(roi.image, patch, located.point_px, radius_px, band)
-    pixels = replace(pixels, spread=spread)
+    pixels = replace(_pixels(roi.image, patch, located.point_px, radius_px, band), spread=spread)
     return RimFitInput(roi, patch, pixels, located.point_px, centre, radius, median(clear_px))
 
 

@@ -145,6 +145,17 @@ class RimSolution:
         add_to_diagonal(scaled, _RIDGE)
         return np.asarray(np.linalg.inv(scaled) / (size[:, None] * size))
 
+    def further(self, rows: Array) -> tuple[Array, Array, Array]:
+        """What the pixels say of further terms ``rows`` (k, n), with free amplitudes.
+
+        Their normal matrix (k, k), the part of it that the present model can imitate, which is no
+        evidence, and their score (k,).
+        """
+        weighted = self.noise.weigh(rows)
+        shared = weighted @ self.design.T
+        imitated = shared @ self.covariance @ shared.T
+        return weighted @ rows.T, imitated, weighted @ self.residuals
+
 
 def initial_solution(problem: RimProblem, vector: Array) -> RimSolution:
     """Solution at the start, where the noise is not known yet: equal weights."""

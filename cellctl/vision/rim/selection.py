@@ -95,14 +95,11 @@ class ScoreTests:
 
     def _gain(self, rows: Array) -> float:
         """Fall of chi square if ``rows`` (k, n) were added to the model with free weights."""
-        solution = self._solution
-        weighted = solution.noise.weigh(rows)
-        shared = weighted @ solution.design.T
-        size, scale = with_unit_diagonal(weighted @ rows.T)
-        # What the fitted model can imitate of the new terms is no evidence for them.
-        size -= (shared @ self._covariance @ shared.T) / (scale[:, None] * scale)
+        normal, imitated, score = self._solution.further(rows)
+        size, scale = with_unit_diagonal(normal)
+        size -= imitated / (scale[:, None] * scale)
         add_to_diagonal(size, _RIDGE)
-        score = (weighted @ solution.residuals) / scale
+        score /= scale
         return float(score @ np.linalg.solve(size, score))
 
     def _gain_of_each(self, rows: Array) -> Array:

@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.spread import ImageSpread, across_edge
+from cellctl.vision.rim.spread import ImageSpread, edge_density, outside_edge
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,14 +128,14 @@ def outside_walls(pixels: RimPixels, shape: RimShape, ratios: Sequence[float]) -
     x, y = pixels.points[:, None] - shape.centre[:, None, None] / shrink
     low_px = (np.sqrt(x * x + y * y) - shape.radius / shrink) * rim.px
     inner_px = np.maximum(low_px, rim.distance_px)
-    return across_edge(_in_blurs(pixels, shape, rim, inner_px), pixels.spread.excess)[0]
+    return outside_edge(_in_blurs(pixels, shape, rim, inner_px), pixels.spread.excess)
 
 
 def outside_circles(pixels: RimPixels, shape: RimShape, radii: Array) -> Array:
     """Share of each pixel outside circles (k,) round the rim's centre, in its plane, (k, n)."""
     rim = _circle(pixels, shape.centre, shape.radius)
     distances_px = rim.distance_px - (radii - shape.radius)[:, None] * rim.px
-    return across_edge(_in_blurs(pixels, shape, rim, distances_px), pixels.spread.excess)[0]
+    return outside_edge(_in_blurs(pixels, shape, rim, distances_px), pixels.spread.excess)
 
 
 def wall_depth(points: Array, shape: RimShape) -> Array:
@@ -207,10 +207,9 @@ def _by_centre_and_radius(circle: _Circle, shape: RimShape) -> Array:
 
 
 def _blurred(pixels: RimPixels, shape: RimShape, circle: _Circle, by_distance: Array) -> Border:
-    blur_px = _blur_px(pixels, shape, circle)
-    z = _in_blurs(pixels, shape, circle, circle.distance_px)
-    outside, by_z = across_edge(z, pixels.spread.excess)
-    density = by_z / blur_px
+    blur_px, excess = _blur_px(pixels, shape, circle), pixels.spread.excess
+    z = np.asarray((circle.distance_px + _bend_px(pixels, shape, circle)) / blur_px)
+    density = edge_density(z, excess) / blur_px
     by_shape = by_distance * density
     by_shape[3] = -z * density * (shape.blur_px / blur_px)
-    return Border(outside, by_shape, circle.direction * density)
+    return Border(outside_edge(z, excess), by_shape, circle.direction * density)

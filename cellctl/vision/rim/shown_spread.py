@@ -54,13 +54,9 @@ def shown_spread(fit: RimFit) -> ShownSpread:
     rows = np.stack(
         [by_variance * (x * x - y * y), by_variance * 2.0 * x * y, by_excess * (z * z - 3.0)]
     )
-    weighted = solution.noise.weigh(rows)
-    shared = weighted @ solution.design.T
-    # What shape and light can imitate of it is no evidence.
-    information = weighted @ rows.T - shared @ solution.covariance @ shared.T
-    covariance = np.linalg.inv(information + _RIDGE * np.eye(len(rows)))
-    change = covariance @ (weighted @ solution.residuals)
-    return ShownSpread(change, np.sqrt(covariance.diagonal()))
+    normal, imitated, score = solution.further(rows)
+    covariance = np.linalg.inv(normal - imitated + _RIDGE * np.eye(len(rows)))
+    return ShownSpread(covariance @ score, np.sqrt(covariance.diagonal()))
 
 
 def image_spread(before: ImageSpread, rims: Sequence[ShownSpread]) -> ImageSpread:

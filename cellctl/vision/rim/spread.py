@@ -27,15 +27,25 @@ class ImageSpread:
         return bool(self.movement_px.any())
 
 
-def across_edge(z: Array, excess: float) -> tuple[Array, Array]:
-    """Share of the light outside an edge and its derivative, by the distance ``z`` over the blur.
+def outside_edge(z: Array, excess: float) -> Array:
+    """Share of the light outside an edge, by the distance ``z`` from it over the blur.
 
     Gram-Charlier series of a normal distribution with an excess kurtosis, to its first term.
     """
-    density = np.exp(-0.5 * z * z) / _SQRT_2PI
     outside = ndtr(z)
     if excess:
+        outside = outside - (excess / 24.0) * (z * z - 3.0) * z * _normal(z)
+    return np.asarray(outside)
+
+
+def edge_density(z: Array, excess: float) -> Array:
+    """The derivative of ``outside_edge`` by ``z``."""
+    density = _normal(z)
+    if excess:
         squares = z * z
-        outside = outside - (excess / 24.0) * (squares - 3.0) * z * density
         density = density * (1.0 + (excess / 24.0) * (squares * (squares - 6.0) + 3.0))
-    return np.asarray(outside), np.asarray(density)
+    return density
+
+
+def _normal(z: Array) -> Array:
+    return np.asarray(np.exp(-0.5 * z * z) / _SQRT_2PI)

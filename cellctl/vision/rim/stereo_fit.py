@@ -17,7 +17,7 @@ from cellctl.vision.rim.selection import (
     fit_two_edges,
 )
 from cellctl.vision.rim.shape import RimShape
-from cellctl.vision.rim.shown_spread import ShownSpread, shown_spread
+from cellctl.vision.rim.solver import RimFit
 from cellctl.vision.rim.spread import ImageSpread
 
 _LEAST_RING_PX = 2.0
@@ -60,10 +60,8 @@ class RimPair:
     right: Rim
     covariance_px2: Array
     """Joint covariance of both points, left first, shape (4, 4)."""
-    shown: tuple[ShownSpread, ShownSpread]
-    """What the fits of each image by itself show of its spread, left and right."""
-    bic: float
-    """As ``RimFit.bic``, of both these fits together."""
+    singles: tuple[RimFit, RimFit]
+    """Fits of each image by itself: they show its spread."""
     one_edge: bool
     """Whether these fits are the result: a second edge looks like a spread."""
 
@@ -133,14 +131,12 @@ def _from_single_fits(
         for one, chosen in zip(given, fits, strict=True)
     )
     joint = joint_covariance(left.covariance_px2, right.covariance_px2)
-    return RimPair(left, right, joint, *_singly(fits), one_edge=True)
+    return RimPair(left, right, joint, _fits(fits), one_edge=True)
 
 
-def _singly(
-    fits: tuple[SelectedFit, SelectedFit],
-) -> tuple[tuple[ShownSpread, ShownSpread], float]:
-    left, right = (selected.fit for selected in fits)
-    return (shown_spread(left), shown_spread(right)), left.bic() + right.bic()
+def _fits(selected: tuple[SelectedFit, SelectedFit]) -> tuple[RimFit, RimFit]:
+    left, right = selected
+    return left.fit, right.fit
 
 
 def _from_joint_fit(
@@ -158,7 +154,7 @@ def _from_joint_fit(
         part = slice(2 * index, 2 * index + 2)
         jacobian[part, part] = one.patch.px_by_point(shape.centre)
     joint = jacobian @ rated.covariance[:4, :4] @ jacobian.T + np.eye(4) * _FLOOR_PX**2
-    return RimPair(left, right, joint, *_singly(singles), one_edge=False)
+    return RimPair(left, right, joint, _fits(singles), one_edge=False)
 
 
 def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float) -> Rim:

@@ -7,21 +7,22 @@ import pytest
 
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.rim.image_scale import image_scale, with_image_scales
-from cellctl.vision.rim.shown_spread import ShownSpread
+from cellctl.vision.rim.spread import ImageSpread
 from cellctl.vision.rim.stereo_fit import Rim, RimPair
+from tests.unit.vision.rim.test_shown_spread import fitted_bore
 
 COVARIANCE = np.array([[4e-4, 1e-4], [1e-4, 2e-4]])
 ELLIPSE = Ellipse(np.zeros(2), (20.0, 19.0), 0.0)
 RIM = Rim(np.zeros(2), COVARIANCE, ELLIPSE, 1.0, 1.0, misfit=1.0)
+FIT = fitted_bore(ImageSpread(), ImageSpread())
 
 
 def pair(left: float, right: float) -> RimPair:
     joint = np.zeros((4, 4))
     joint[:2, :2] = joint[2:, 2:] = COVARIANCE
     joint[0, 2] = joint[2, 0] = 5e-5
-    shown = ShownSpread(np.zeros(3), np.ones(3))
     rims = replace(RIM, misfit=left), replace(RIM, misfit=right)
-    return RimPair(*rims, joint, (shown, shown), 0.0, one_edge=True)
+    return RimPair(*rims, joint, (FIT, FIT), one_edge=True)
 
 
 def test_good_images_change_nothing() -> None:

@@ -9,23 +9,23 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.rim.light import LightModel
 from cellctl.vision.rim.shape import RimShape, borders
 from cellctl.vision.rim.shown_spread import ShownSpread, image_spread, shown_spread
-from cellctl.vision.rim.solver import full_fit, single_image_problem
+from cellctl.vision.rim.solver import RimFit, full_fit, single_image_problem
 from cellctl.vision.rim.spread import ImageSpread
 from tests.unit.vision.rim.test_shape import SHAPES, pixels_round
 
 _SIGMA = np.array([0.01, 0.01, 0.08])
 
 
-def _shown(spread: ImageSpread, believed: ImageSpread, seed: int = 1) -> ShownSpread:
-    """Of a dark bore with noise, fitted with a spread that is believed."""
+def fitted_bore(spread: ImageSpread, believed: ImageSpread) -> RimFit:
+    """A dark bore with noise, fitted with a spread that is believed."""
     shape = SHAPES["bore"]
     pixels = replace(pixels_round(shape.centre), spread=spread)
     (rim,) = borders(pixels, shape)
-    noise = np.random.default_rng(seed).normal(0.0, 1.5, len(rim.outside))
+    noise = np.random.default_rng(1).normal(0.0, 1.5, len(rim.outside))
     seen = replace(pixels, grey=40.0 + 140.0 * rim.outside + noise, spread=believed)
     start = RimShape(shape.centre, shape.radius, 1.0)
     problem = single_image_problem(seen, start, LightModel(), shape.radius, None)
-    return shown_spread(full_fit(problem, start.vector))
+    return full_fit(problem, start.vector)
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,8 @@ def _shown(spread: ImageSpread, believed: ImageSpread, seed: int = 1) -> ShownSp
 def test_a_rim_shows_movement_and_focus(
     movement_px: tuple[float, float], excess: float, change: tuple[float, float, float]
 ) -> None:
-    shown = _shown(ImageSpread(np.array(movement_px), excess), ImageSpread())
+    spread = ImageSpread(np.array(movement_px), excess)
+    shown = shown_spread(fitted_bore(spread, ImageSpread()))
     # First order: a large change comes out by up to a quarter too small.
     allowed = 4.0 * shown.sigma + 0.25 * np.abs(change)
     assert (np.abs(shown.change - change) < allowed).all()
@@ -50,7 +51,7 @@ def test_a_rim_shows_movement_and_focus(
 
 def test_what_is_modelled_is_not_shown_again() -> None:
     spread = ImageSpread(np.array([0.6, -0.2]), -0.5)
-    shown = _shown(spread, spread)
+    shown = shown_spread(fitted_bore(spread, spread))
     assert (np.abs(shown.change) < 4.0 * shown.sigma).all()
 
 
