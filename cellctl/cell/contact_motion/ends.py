@@ -9,11 +9,15 @@ from cellctl.force.contact.streamed.path import PathFollower
 
 End = Callable[[ContactSample], Ended | None]
 
-_SOFTER = 2.0
-"""How many times softer than along the hole an arm may be across it."""
+SOFTEST = 2.0
+"""How many times softer than along the hole arm and contact may be across it."""
 _REPEATABLE_M = 0.1e-3
-_LEAST_N, _SIGMAS = 1.0, 8.0
-"""A force that grows by less may do so by noise, or while the arm comes to rest."""
+_LEAST_CHANGE_N, _LEAST_SIGMAS = 1.0, 8.0
+
+
+def least_change_n(force_sigma_n: float) -> float:
+    """A force that changes by less may do so by friction, or by noise of this deviation."""
+    return max(_LEAST_CHANGE_N, _LEAST_SIGMAS * force_sigma_n)
 
 
 def first_of(*ends: End) -> End:
@@ -44,7 +48,8 @@ class SomethingMet:
 
     def __init__(self, limit_n: float, stiffness_n_m: float) -> None:
         self._limit_n, self._stiffness_n_m = limit_n, stiffness_n_m
-        self._leaves: ContactSample | None = None
+        self._begin: ContactSample | None = None
+        """In contact, until that is left."""
         self._left = False
 
     def __call__(self, sample: ContactSample) -> Ended | None:
@@ -55,16 +60,13 @@ class SomethingMet:
             return None
         if self._left:
             return Ended.FORCE
-        begin = self._leaves = self._leaves or sample
-        grown_n = force_n - _size(begin.force_n)
-        way_m = _size(sample.task_position_tip_m - begin.task_position_tip_m)
-        yields_m = _SOFTER * _size(begin.force_n) / self._stiffness_n_m
-        stays = way_m > yields_m + _REPEATABLE_M
-        return (
-            Ended.FORCE
-            if stays or grown_n > max(_LEAST_N, _SIGMAS * sample.force_sigma_n)
-            else None
-        )
+        if self._begin is None:
+            self._begin = sample
+        begun_n = _size(self._begin.force_n)
+        way_m = _size(sample.task_position_tip_m - self._begin.task_position_tip_m)
+        stays = way_m > SOFTEST * begun_n / self._stiffness_n_m + _REPEATABLE_M
+        grows = force_n - begun_n > least_change_n(sample.force_sigma_n)
+        return Ended.FORCE if stays or grows else None
 
 
 def _size(vector: Vector) -> float:

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from cellctl.cell.contact_motion.ends import SOFTEST
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve
@@ -15,7 +16,6 @@ from cellctl.processes.peg_in_hole.offline.split import CurveParts, Samples
 from cellctl.processes.peg_in_hole.verdict.answer import MARGIN_M
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, Side, push_force_n
-from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST
 
 _MEAN_S = 10e-3
 """Time over which a force is averaged: ``force_sigma_n`` is that of ten samples at 1 kHz."""

@@ -94,16 +94,13 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     fast_m_s = touch_speed_m_s(
         task.cell.stiffness_n_m, task.cell.dead_time_s, task.limits.insertion_n / 2
     )
-    # A face that is tilted by as much as is allowed is still met from above, as by the touches that
-    # follow.
-    above_m = height_uncertainty_m + _OVER_PLANE_M + radius_m * float(np.tan(_MOST_TILT_RAD))
+    above_m = height_uncertainty_m + _above_m(radius_m)
     reach_m = above_m + height_uncertainty_m + _BEYOND_M
     await touching.over_first(places[0], plan.datum_depth_m - above_m)
     touches = [await touching.at(places[0], reach_m, speed_m_s=fast_m_s)]
     first_m = _depth_m(touches[0])
     for angle_rad, place in zip(ANGLES_RAD[1:], places[1:], strict=True):
-        apart_m = float(np.linalg.norm(place - places[0]))
-        above_m = _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))
+        above_m = _above_m(float(np.linalg.norm(place - places[0])))
         await touching.over_next(float(angle_rad), radius_m, first_m - above_m)
         touches.append(await touching.at(place, 2 * above_m + _BEYOND_M))
     await touching.leave(places[-1], first_m - above_m)
@@ -111,6 +108,12 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
     pressed_n = np.array([-touch.force_n[2] for touch in touches])[_OF_PLANE]
     face = _checked(places, depths - plan.datum_depth_m, task, radius_m)
     return replace(face, yields_m=float(np.mean(pressed_n)) / task.cell.stiffness_n_m)
+
+
+def _above_m(apart_m: float) -> float:
+    """Height from which a face that is tilted by as much as is allowed is still met from above,
+    so far from where its height is known."""
+    return _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))
 
 
 def _depth_m(touch: ContactSample) -> float:

@@ -5,31 +5,24 @@ with all that is left of the way of its push. So a push on which nothing is felt
 drawn would have been met, and goes on only after a greater press along the axis was felt.
 """
 
+from cellctl.cell.contact_motion.ends import SOFTEST, least_change_n
 from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport, depth_m, either
-from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
-from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST
+from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 
 MARGIN_M = 0.1e-3
 """How much farther than drawn a wall may stand."""
-_LEAST_CHANGE_N, _LEAST_SIGMAS = 1.0, 8.0
-"""A smaller change of the force may be friction or noise."""
 _PRESS_MORE = 3.0
 """By how many such changes more the peg is pressed to see whether the sensor answers."""
 _ANSWERS_S = 1.0
 _REPEATABLE_M = 20e-6
 
 
-def least_change_n(cell: JudgedCell) -> float:
-    """A change of a force by more is neither friction nor noise."""
-    return max(_LEAST_CHANGE_N, _LEAST_SIGMAS * cell.force_sigma_n)
-
-
 class NothingFelt:
     """Holds where a push has gone on for a way on which a wall as drawn would have been felt."""
 
     def __init__(self, task: JudgedTask, axis: int) -> None:
-        self._axis, self._least_n = axis, least_change_n(task.cell)
+        self._axis, self._least_n = axis, least_change_n(task.cell.force_sigma_n)
         yields_m = SOFTEST * self._least_n / task.cell.stiffness_n_m
         self._most_m = 2 * task.fit.clearance_m + MARGIN_M + yields_m
         self._changed: ContactSample | None = None
@@ -50,7 +43,7 @@ async def sensor_answers(
 
     False for a peg that nothing carries, too.
     """
-    least_n = least_change_n(task.cell)
+    least_n = least_change_n(task.cell.force_sigma_n)
     more_n = _PRESS_MORE * least_n
     sinks_m = SOFTEST * more_n / task.cell.stiffness_n_m + _REPEATABLE_M
 

@@ -5,6 +5,7 @@ from math import isnan, nan
 
 import numpy as np
 
+from cellctl.cell.contact_motion.ends import SOFTEST, least_change_n
 from cellctl.cell.contact_motion.motions import (
     ContactMotion,
     ContactMotions,
@@ -18,12 +19,11 @@ from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 from cellctl.processes.peg_in_hole.verdict.answer import (
     MARGIN_M,
     NothingFelt,
-    least_change_n,
     sensor_answers,
 )
 from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
-from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST, yielded_m
+from cellctl.processes.peg_in_hole.verdict.yielding import yielded_m
 
 _PRESS_N = 2.0
 _FASTEST_M_S = 0.5e-3
@@ -75,7 +75,7 @@ async def walls_answer(motions: ContactMotions, task: SearchTask) -> bool:
 
     False also where they stand farther apart than drawn.
     """
-    least_n = least_change_n(task.cell)
+    least_n = least_change_n(task.cell.force_sigma_n)
     push_n = max(_LEAST_PUSH_N, 2 * least_n)
     ends: dict[Side, ContactMotion | None] = {}
     for side in ((0, 1.0), (0, -1.0)):

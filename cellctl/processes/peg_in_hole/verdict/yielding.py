@@ -9,11 +9,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from cellctl.cell.contact_motion.ends import SOFTEST
 from cellctl.cell.contact_motion.motions import ContactSample
 
-SOFTEST = 2.0
-"""A push believes arm and contact to be softer than stated by this factor at most; what is softer
-shows as play."""
 _FROM_SHARE = 0.4
 """Share of the greatest force from which its rise counts: by then the peg leans on its wall."""
 _LEAST_SAMPLES = 4
@@ -25,6 +23,7 @@ def yielded_m(
     """By how much arm and contact yield under ``push_n`` along an axis, m.
 
     ``samples`` of a push that something has met; ``stated_n_m`` is the stiffness along the hole.
+    What is softer than that by more than ``SOFTEST`` shows as play.
     """
     stated = 1.0 / stated_n_m
     against_n = np.array([-sign * sample.force_n[axis] for sample in samples])

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
+from cellctl.cell.contact_motion.ends import SOFTEST
 from cellctl.cell.contact_motion.motions import ContactSample
-from cellctl.processes.peg_in_hole.verdict.yielding import SOFTEST, yielded_m
+from cellctl.processes.peg_in_hole.verdict.yielding import yielded_m
 
 STATED_N_M = 1e5
 PUSH_N = 6.0
