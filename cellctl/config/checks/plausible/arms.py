@@ -74,7 +74,7 @@ def arm_remarks(cell: CellConfig) -> Iterator[ConfigIssue]:
 
 
 def _ways_back(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
-    stated = {(way.start, way.end): way for way in robot.ways}
+    stated = {(way.start, way.end): index for index, way in enumerate(robot.ways)}
     for index, way in enumerate(robot.ways):
         back = stated.get((way.end, way.start))
         said = ""
@@ -83,7 +83,7 @@ def _ways_back(path: str, robot: RobotConfig) -> Iterator[ConfigIssue]:
                 f"back from {way.end!r} to {way.start!r} the arm goes straight in the joints; "
                 "right if that is free (`cellctl check --moves`)"
             )
-        elif robot.ways.index(back) < index and back.via_deg != way.via_deg[::-1]:
+        elif back < index and robot.ways[back].via_deg != way.via_deg[::-1]:
             said = (
                 f"the way from {way.end!r} to {way.start!r} leads over other joints: a slip in one "
                 "of them, or right if both are free (`cellctl check --moves`)"

@@ -82,7 +82,7 @@ def recipe_remarks(
     yield from _corrections(recipe, key)
     yield from _board(cell, recipe, folder)
     yield from _payload(cell, recipe, folder)
-    yield from hole_size_remarks(cell, recipe, key, folder)
+    yield from hole_size_remarks(cell, recipe, (deck, frame), folder)
     yield from load_remarks(cell, recipe, key)
     yield from _taught_again(cell, recipe, folder)
     yield from unlike_box_remarks(cell, recipe)

@@ -8,6 +8,7 @@ import pytest
 from cellctl.config import load_cell
 from cellctl.config.devices import AutoExposureConfig
 from cellctl.processes.deck_to_frame.checks.hole_sizes import hole_size_remarks
+from cellctl.processes.deck_to_frame.checks.plausible.drawing import read_drawings
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
 CONFIG = Path(__file__).parents[5] / "config"
@@ -26,6 +27,7 @@ def test_sizes_beside_the_drawn_holes_are_remarked_on(
     cameras = {"stereo_cameras": {**cell.stereo_cameras, "head_1": head}}
     cell = cell.model_copy(update=cameras)
     recipe = cast(DeckRecipe, cell.recipes[0])
-    found = list(hole_size_remarks(cell, recipe, "recipes.0", CONFIG))
+    drawings = read_drawings(recipe, "recipes.0", CONFIG)
+    found = list(hole_size_remarks(cell, recipe, drawings, CONFIG))
     assert [one.key for one in found] == ["stereo_cameras.head_1.auto_exposure.hole_px"] * said
     assert all("have radii of 16 to 22 px" in one.allowed for one in found)
