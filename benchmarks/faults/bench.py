@@ -24,6 +24,8 @@ DEVICES = (*ARMS, "force", "head_1", "head_2", "tracker", "world")
 POLL_S = 0.03
 PROCESSES_S = 20.0
 """How long a process of the daemon is waited for that is to be killed or suspended."""
+BOTH_WORKERS_S = 1.0
+"""How long the second of two vision workers is waited for."""
 RESTING = frozenset({"Aborted", "Stopped", "Held", "Completed", "Idle"})
 OVER = RESTING - {"Idle"}
 """A job that is found in one of these has ended."""
@@ -98,16 +100,31 @@ class Bench:
         if whom == "daemon":
             self.daemon.process.send_signal(number)
             return
-        word = {"guard": "cellctl.guard", "workers": "spawn_main"}[whom]
-        # Workers that an earlier trial has killed are started anew when there is work for them.
-        deadline = time.monotonic() + PROCESSES_S
-        while not (found := [p for p, line in self.daemon.descendants().items() if word in line]):
-            if time.monotonic() > deadline:
-                raise NotReached(f"no process of the daemon is called {word}")
-            time.sleep(POLL_S)
-        for pid in found:
+        for pid in self._guards() if whom == "guard" else self._workers():
             with suppress(ProcessLookupError):
                 os.kill(pid, number)
+
+    def _guards(self) -> list[int]:
+        found = self._processes("cellctl.guard", 1, PROCESSES_S)
+        if not found:
+            raise NotReached("the daemon has no guard")
+        return found
+
+    def _workers(self) -> list[int]:
+        # Each is started when there is work for it, those anew that an earlier trial has killed. If
+        # only the first is hit, the second does the work of both and nothing is wrong with the run.
+        if not self._processes("spawn_main", 1, PROCESSES_S):
+            raise NotReached("the daemon has no vision worker")
+        return self._processes("spawn_main", 2, BOTH_WORKERS_S)
+
+    def _processes(self, word: str, count: int, patience_s: float) -> list[int]:
+        """Those of the daemon with the word in their command line, once there are so many."""
+        deadline = time.monotonic() + patience_s
+        while True:
+            found = [pid for pid, line in self.daemon.descendants().items() if word in line]
+            if len(found) >= count or time.monotonic() > deadline:
+                return found
+            time.sleep(POLL_S)
 
     def fill_disk(self) -> None:
         """No file of the daemon takes another byte: EFBIG, handled as a full disk is."""
