@@ -117,7 +117,9 @@ class CellInUse(LocalError):
     text = "The devices of this cell are not asked: they are in use"
     cause = "The daemon of this cell runs, or another program has the ports of the cell file."
     remedy = "Ask the daemon: `cellctl status`, `cellctl robot`. To ask the devices themselves, "
-    remedy += "end it while the arms stand (`systemctl stop cellctl`) and check again."
+    remedy += "end it while the arms stand and check again: a service by `systemctl stop cellctl`, "
+    remedy += "a program in a terminal by Ctrl-C there. `make cell` takes its fake devices along; "
+    remedy += "`python -m fakes run --scenario FILE` starts them without a daemon."
 
 
 class OtherDevice(LocalError):

@@ -94,9 +94,12 @@ class DeckInGripper(ForceError):
     text = "The deck is still in the gripper"
     cause = "It was not taken out before a procedure whose moves need its space."
     remedy = (
-        "Take it out, a heavy one with lifting gear. If the gripper is empty, the deck weighs too "
-        "little to be told from an empty one: invalidate the payload "
-        "(`cellctl calibrate invalidate`) and identify it again after."
+        "Take it out, a heavy one with lifting gear. If the gripper is empty, the deck weighs less "
+        "than `max_untared_force_n` of its recipe: write about 4 % of the weight that hangs on the "
+        "sensor there, if that is less than the deck weighs, and start cellctl anew. If it is not, "
+        "nothing tells the deck: look that the gripper is empty, invalidate the payload "
+        '(`cellctl calibrate invalidate payload --reason "empty gripper"`) and identify it again '
+        "after."
     )
     reaction = Reaction.STOP
 

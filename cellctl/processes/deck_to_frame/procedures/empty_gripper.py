@@ -36,5 +36,6 @@ async def require_no_deck(cell: DeckCell, services: CellServices) -> None:
     if left_n <= bound_n:
         raise DeckInGripper(
             f"the sensor reads the payload of procedure 106, {payload.mass_kg:.1f} kg, to within "
-            f"{left_n:.0f} N; another payload differs by more than {bound_n:.0f} N"
+            f"{left_n:.0f} N; another payload differs by more than max_untared_force_n, "
+            f"{bound_n:.0f} N"
         )

@@ -138,8 +138,11 @@ def test_a_file_with_errors_is_not_asked_after(own: OwnCell) -> None:
 def test_where_the_line_is_served_nothing_is_asked(own: OwnCell) -> None:
     """Only a daemon serves it, whose devices would lose their links."""
     with socket.create_server(("127.0.0.1", own.modbus_port)):
-        with pytest.raises(CellInUse, match="somebody serves the line"):
+        with pytest.raises(CellInUse, match="somebody serves the line") as raised:
             run(own)
+        # `systemctl stop` does nothing for the cell of `make cell`.
+        assert "a program in a terminal by Ctrl-C there" in raised.value.remedy
+        assert "`python -m fakes run --scenario FILE`" in raised.value.remedy
         with own.control() as control:
             assert control.request("status")["channels"] == {"arm": []}
 

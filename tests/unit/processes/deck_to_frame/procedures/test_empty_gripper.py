@@ -1,6 +1,7 @@
 """A deck that was left in the gripper is told by its weight, before anything swings through."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -51,4 +52,21 @@ async def test_without_the_weight_of_a_deck_it_goes_on(rig: ProcedureRig) -> Non
 async def test_before_anything_was_weighed_the_guide_alone_asks(rig: ProcedureRig) -> None:
     hang(rig, np.zeros(3))
     (rig.bench.calibrations.path / f"{PAYLOAD.name}.json").unlink()
+    await require_no_deck(rig.bench.deck, rig.services)
+
+
+async def test_a_light_deck_is_told_from_an_empty_gripper_by_what_the_remedy_says(
+    rig: ProcedureRig,
+) -> None:
+    """Of 50 N less than the default of what a run lets the compensation be off."""
+    hang(rig, np.array([0.0, 0.0, 50.0]))
+    with pytest.raises(DeckInGripper, match="by more than max_untared_force_n, 80 N") as raised:
+        await require_no_deck(rig.bench.deck, rig.services)
+    assert "`max_untared_force_n` of its recipe" in raised.value.remedy
+    assert "`cellctl calibrate invalidate payload --reason" in raised.value.remedy
+    (recipe,) = rig.bench.deck.recipes
+    mating = recipe.mating.model_copy(update={"max_untared_force_n": 40.0})
+    lowered = recipe.model_copy(update={"mating": mating})
+    await require_no_deck(replace(rig.bench.deck, recipes=(lowered,)), rig.services)
+    rig.bench.calibrations.invalidate([PAYLOAD], "empty gripper")
     await require_no_deck(rig.bench.deck, rig.services)
