@@ -8,6 +8,7 @@ from cellctl.force.contact.recorded_units import (
     impossible_sampling,
     impossible_speed,
 )
+from cellctl.force.contact.recorded_zero import FEWEST_FREE, zero_off
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.faults.plugging import InsertionCurveInvalid
@@ -20,9 +21,12 @@ _AWAY = 0.1
 force."""
 _SOME = 0.95
 """Quantile of the levers that is judged: single samples have noise."""
-_FREE_SHARE, _FREE_SIGMAS, _FREE_SAMPLES = 0.25, 5.0, 20
-"""A mean force above the touch is none of the noise beyond this share of what is allowed before the
-springs and so many standard deviations of the mean; of fewer samples nothing is said."""
+_FREE_SHARE = 0.25
+"""A mean force above the touch matters from this share of what is allowed before the springs on."""
+_FREE_MOMENT_SHARE = 0.5
+"""The same of moments, of what moves the force to the bound of the centre of pressure as soon as
+that is judged, and of what is allowed about z before the springs. Means of the fake cells are a
+third of it."""
 
 
 def require_possible_curve(curve: InsertionCurve, socket: Connector) -> None:
@@ -66,7 +70,7 @@ def _pulled_in(curve: InsertionCurve, least_n: float) -> str | None:
 def unknown_zero(curve: InsertionCurve, socket: Connector) -> str | None:
     """What is to be said of a curve that begins so late that nothing in it shows its zero."""
     limits = InsertionLimits.of(socket)
-    if len(_free_n(curve, limits)) >= _FREE_SAMPLES:
+    if len(_free(curve, limits)) >= FEWEST_FREE:
         return None
     return (
         f"Nothing was recorded higher than {limits.entry_height_m / MM:g} mm over the touch, where "
@@ -76,29 +80,24 @@ def unknown_zero(curve: InsertionCurve, socket: Connector) -> str | None:
 
 
 def _not_tared(curve: InsertionCurve, socket: Connector) -> str | None:
-    """A zero that is off hides what is felt before the springs, or shows what was not."""
+    """A zero that is off hides what is felt before the springs, or shows what was not; one of the
+    moments moves the contact that is suspected."""
     limits = InsertionLimits.of(socket)
-    free_n = _free_n(curve, limits)
-    if len(free_n) < _FREE_SAMPLES:
-        return None
-    mean_n, sigma_n = free_n.mean(axis=0), free_n.std(axis=0) / np.sqrt(len(free_n))
-    for axis, allowed_n in enumerate(
-        (limits.entry_side_n, limits.entry_side_n, limits.entry_axial_n)
-    ):
-        most_n = max(_FREE_SHARE * allowed_n, _FREE_SIGMAS * float(sigma_n[axis]))
-        if abs(mean_n[axis]) > most_n:
-            return (
-                f"{_FORCES[axis]} is {mean_n[axis]:.3g} N in the mean higher than "
-                f"{limits.entry_height_m / MM:g} mm over the touch, where no force acts; expected "
-                f"within {most_n:.2g} N of 0: recorded without a tare, or a hose that pulls?"
-            )
-    return None
+    side_n, axial_n = (_FREE_SHARE * one for one in (limits.entry_side_n, limits.entry_axial_n))
+    tilting_n_m = _FREE_MOMENT_SHARE * limits.least_pressure_n * limits.centre_of_pressure_m
+    turning_n_m = _FREE_MOMENT_SHARE * limits.entry_moment_z_n_m
+    allowed = (side_n, side_n, axial_n, tilting_n_m, tilting_n_m, turning_n_m)
+    units = ["N"] * len(_FORCES) + ["N·m"] * len(_MOMENTS)
+    columns = zip((*_FORCES, *_MOMENTS), units, allowed, strict=True)
+    where = f"higher than {limits.entry_height_m / MM:g} mm over the touch"
+    return zero_off(_free(curve, limits), columns, where)
 
 
-def _free_n(curve: InsertionCurve, limits: InsertionLimits) -> Array:
-    """The forces above the touch, on the way in; shape (n, 3)."""
+def _free(curve: InsertionCurve, limits: InsertionLimits) -> Array:
+    """Forces and moments above the touch, on the way in; shape (n, 6)."""
     way_in = slice(0, int(np.argmax(curve.depth_m)) + 1)
-    return curve.force_n[way_in][curve.depth_m[way_in] < -limits.entry_height_m]
+    above = curve.depth_m[way_in] < -limits.entry_height_m
+    return np.hstack([curve.force_n[way_in][above], curve.moment_n_m[way_in][above]])
 
 
 def _far_levers(curve: InsertionCurve, socket: Connector) -> str | None:

@@ -26,6 +26,7 @@ from cellctl.processes.peg_in_hole.offline.curve import PegCurve
 from cellctl.processes.peg_in_hole.offline.felt_parts import by_force
 from cellctl.processes.peg_in_hole.offline.split import CurveParts, by_motions
 from cellctl.processes.peg_in_hole.offline.task_file import TaskOfCurve
+from cellctl.processes.peg_in_hole.offline.zero import not_tared
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence, LateralCapture
 from cellctl.processes.peg_in_hole.verdict.holding import MET_N_M
 from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, capture_of
@@ -34,6 +35,8 @@ from cellctl.processes.peg_in_hole.verdict.lateral import SIDES, capture_of
 def evidence_of(curve: PegCurve, task: TaskOfCurve) -> InsertionEvidence:
     """Raises ``PegCurveInvalid`` for signs or units that contradict what was done."""
     _require_possible_units(curve, task)
+    if (why := not_tared(curve)) is not None:
+        raise PegCurveInvalid(why)
     parts = _split(curve, task)
     _require_signs(curve, parts, task)
     end = Standing.of(parts.feed[-1])

@@ -15,6 +15,7 @@ from cellctl.processes.peg_in_hole.offline.task_file import (
     read_part,
     recorded_evidence,
 )
+from cellctl.processes.peg_in_hole.offline.zero import unknown_zero
 from cellctl.processes.peg_in_hole.plausible.fit import wide_clearance
 from cellctl.processes.peg_in_hole.verdict.evidence import InsertionEvidence
 from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, judge_peg
@@ -27,11 +28,15 @@ def judge_by_task(curve: Path, task: Path) -> JudgedInsertion:
     try:
         read = read_curve(curve, force_on_hole=part.curve.force_on == "hole")
         evidence, judgement = judge_curve(read, part)
-        require_own_curve(evidence, recorded_evidence(task))
+        recorded = recorded_evidence(task)
+        require_own_curve(evidence, recorded)
     except PegCurveInvalid as fault:
         raise PegCurveInvalid(f"{curve}: {fault.detail}") from fault
     wide = wide_clearance(part.fit)
     said = () if wide is None else (f"fit.clearance_mm = {part.fit.clearance_mm:g} is {wide}.",)
+    # The curve of a run was tared by the run.
+    if recorded is None and (open_zero := unknown_zero(read)) is not None:
+        said = (*said, open_zero)
     record = _plain({"evidence": evidence.to_record(), "judgement": judgement.to_record()})
     return JudgedInsertion(
         judgement.verdict.value,

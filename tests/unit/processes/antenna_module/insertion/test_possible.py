@@ -77,6 +77,21 @@ def test_a_curve_that_was_not_tared_is_named(column: int, off_n: float) -> None:
         require_possible_curve(replace(good, force_n=force_n), SOCKET)
 
 
+@pytest.mark.parametrize(
+    ("column", "off_n_m"), [(0, 0.005), (0, -0.005), (1, 0.005), (2, 0.005), (2, -0.005)]
+)
+def test_moments_that_were_not_tared_are_named(column: int, off_n_m: float) -> None:
+    """Else the contact that a moment points at is another one."""
+    good = curve()
+    moment_n_m = good.moment_n_m.copy()
+    moment_n_m[:, column] += off_n_m
+    name = ("mx_n_m", "my_n_m", "mz_n_m")[column]
+    with pytest.raises(
+        InsertionCurveInvalid, match=rf"{name} is .* N·m in the mean.* without a tare"
+    ):
+        require_possible_curve(replace(good, moment_n_m=moment_n_m), SOCKET)
+
+
 def test_a_curve_that_begins_at_the_touch_shows_no_zero() -> None:
     good = curve()
     assert unknown_zero(good, SOCKET) is None
