@@ -30,8 +30,8 @@ class StoreContradictsVersion(StoreUnavailable):
     """The run store holds what the version that it claims could not have written."""
 
     number = 826
-    text = "Run store claims an earlier version than its content has"
-    cause = "Somebody has edited store.sqlite, or put parts of two stores together."
+    text = "Run store holds what its version could not have written"
+    cause = "store.sqlite was edited, given a trigger or a view, or made of parts of two stores."
     remedy = "Keep it as evidence: records may be forged. Restore the store from its backup."
 
 

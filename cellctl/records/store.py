@@ -13,6 +13,7 @@ from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import RecordAltered
 from cellctl.records.database import ledger, reading, rows, schema, sealed, sealed_details
+from cellctl.records.database.claimed_version import foreign_parts
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.database.sessions import LOCK_WAIT_S, Database
 from cellctl.records.database.stored_records import LINE_SEQ, StoredRecords
@@ -268,8 +269,9 @@ class RunStore(StoredRecords):
         Files are read too: one that is missing or not as it was stored is a problem.
         """
         with self._database.read() as session:
+            foreign = [f"the store has {part}" for part in foreign_parts(session.connection())]
             damaged = reading.damaged_files(session, self.artefacts)
-            return [*ledger.problems(session, printed), *damaged]
+            return [*foreign, *ledger.problems(session, printed), *damaged]
 
     def ledger_head(self) -> LedgerHead:
         """Length and newest hash of the chain."""

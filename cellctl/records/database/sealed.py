@@ -53,12 +53,19 @@ class SealedKind:
 
 
 def _run(session: Session, row: RunRow) -> Content | None:
-    """A closed run with its details, in the tables of the schema that wrote it."""
-    # An open run still changes. What it began with is sealed by the entry of its opening.
-    if row.ended is None:
+    """A closed run with its details, in the tables of the schema that wrote it.
+
+    Raises ``LookupError`` for a run that cannot be of the schema that it claims.
+    """
+    # An open run still changes, and has none of what closes it. What it began with is sealed by the
+    # entry of its opening.
+    if all(getattr(row, name) is None for name in FILLED[RUN]):
         return None
     if row.record_schema == 1:
-        return schema_1.sealed_content(session, row.number)
+        content = schema_1.sealed_content(session, row.number)
+        if content is None:
+            raise LookupError(f"run {row.number} is none of schema 1")
+        return content
     details = {
         table.__tablename__: [
             columns(detail)

@@ -24,6 +24,7 @@ from cellctl.errors.records import (
 )
 from cellctl.files.atomic_files import make_folder_durably
 from cellctl.records.database import migration
+from cellctl.records.database.claimed_version import require_own_parts
 from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
@@ -51,6 +52,7 @@ class Database:
         ``StoreTooNew``, ``StoreLocked``, and what ``alone`` raises.
         """
         self._failed: str | None = None
+        self._file = file
         if not (create or file.exists()):
             raise StoreUnavailable(f"there is no {file}")
         self._access = ReadAccess(file)
@@ -91,7 +93,7 @@ class Database:
         Raises ``RecordNotWritten`` when it is not, and from then on always; ``StoreLocked`` when
         another program was writing all the time, and nothing was written; ``RunUnknown`` when it
         refers to a run that does not exist; ``StoreTooNew`` when a later version has migrated the
-        store since it was opened.
+        store since it was opened; ``StoreContradictsVersion`` when it has a trigger or a view.
         """
         if self._failed is not None:
             raise RecordNotWritten(f"the store failed earlier: {self._failed}")
@@ -100,6 +102,8 @@ class Database:
                 version = migration.schema_version(session.connection())
                 if version != SCHEMA_VERSION:
                     raise StoreTooNew(f"it has schema {version} since it was opened")
+                # With the lock held, so that none can be added before this transaction ends.
+                require_own_parts(session.connection(), self._file)
                 yield session
         # A refused row is a mistake of the caller and says nothing about the disk: the store goes
         # on.

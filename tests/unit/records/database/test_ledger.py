@@ -12,9 +12,11 @@ from sqlalchemy import Column, text
 from sqlalchemy.orm import Session
 
 from cellctl.calibration.store.envelope import StoredCalibration
+from cellctl.errors.records import StoreContradictsVersion
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database import ledger
 from cellctl.records.database.schema import Base
+from cellctl.records.figures import Limit, figure
 from cellctl.records.seals import LedgerHead
 from tests.unit.records import sample
 from tests.unit.records.conftest import start
@@ -148,6 +150,61 @@ def test_a_row_that_nobody_has_sealed(whole: RunStore, table: str) -> None:
         fresh["hash"] = f"'{'e' * 64}'"
     source = f"SELECT {', '.join(fresh.values())} FROM {table} WHERE {newest(table)}"
     assert found_after(whole, f"INSERT INTO {table} ({', '.join(fresh)}) {source}")
+
+
+@pytest.mark.parametrize(
+    ("record_schema", "process", "ended"),
+    [
+        pytest.param("2", "process", "NULL", id="open, of a schema that sealed no openings"),
+        pytest.param("1", "process", "ended", id="closed, of a schema whose tables are not there"),
+        pytest.param("1", "'other'", "ended", id="closed, of a process that schema 1 did not know"),
+    ],
+)
+def test_a_good_run_that_claims_to_be_older_than_its_seals(
+    copy: Path, record_schema: str, process: str, ended: str
+) -> None:
+    store = RunStore(copy, create=False)
+    before = store.good_parts()
+    store.close()
+    forged = {"number": "99", "record_schema": record_schema, "process": process, "ended": ended}
+    names = [column.name for column in Base.metadata.tables["runs"].columns]
+    values = ", ".join(forged.get(name, name) for name in names)
+    execute(
+        copy,
+        f"INSERT INTO runs ({', '.join(names)}) SELECT {values} FROM runs WHERE result = 'good'",
+    )
+    store = RunStore(copy, create=False)
+    assert store.good_parts() == before + 1
+    assert store.verify() == ["run 99 is closed but not sealed"]
+    store.close()
+
+
+_PLANTED = (
+    "CREATE TRIGGER planted AFTER INSERT ON figures"
+    " BEGIN UPDATE figures SET value = 0.01, verdict = 'pass' WHERE id = new.id; END"
+)
+
+
+def test_a_trigger_that_changes_figures_before_they_are_sealed(copy: Path) -> None:
+    """What it changes is read back, judged and sealed, so that nothing is written beside it."""
+    store = RunStore(copy)
+    run = start(store, "SAT-0003")
+    execute(copy, _PLANTED)
+    assert store.verify() == ["the store has trigger planted"]
+    with pytest.raises(StoreContradictsVersion, match="trigger planted"):
+        store.add(run, figure("offset", 3.0, "mm", limit=Limit(upper=0.2)))
+    with pytest.raises(StoreContradictsVersion, match="trigger planted"):
+        store.close_run(run, RunResult.GOOD)
+    execute(copy, "DROP TRIGGER planted")
+    assert store.run(run).figures == ()
+    assert store.run(run).head.result is None
+    store.close()
+
+
+def test_a_view_in_place_of_a_table(copy: Path) -> None:
+    execute(copy, "ALTER TABLE gauges RENAME TO kept")
+    execute(copy, "CREATE VIEW gauges AS SELECT * FROM kept")
+    assert "the store has view gauges" in problems(copy)
 
 
 def test_a_run_that_is_removed_with_its_seals(copy: Path) -> None:
