@@ -20,7 +20,7 @@ from cellctl.cell.gather import gather_or_cancel
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import MM
-from cellctl.interfaces import StereoPair, Target, TargetTracker
+from cellctl.interfaces import Target, TargetTracker
 from cellctl.interfaces.stereo_camera import Image
 from cellctl.procedures.input_forms import targets_from_input, targets_to_input
 from cellctl.runtime.procedure import ProcedureContext, views_of_pair
@@ -112,44 +112,18 @@ async def _in_head(
     head_T_board: RigidTransform,
 ) -> tuple[BoardPose, list[list[str]]]:
     """The board, and the files of the images."""
-    discs = board_discs()
     found: list[PairMeasurement] = []
     files: list[list[str]] = []
     for number in range(1, PAIRS + 1):
         pair = await station.camera.grab()
         views = views_of_pair(station.name, pair)
         files.append(await context.keep_images(f"board-{number}", views))
-        try:
-            measured = await _measured(workers, pair, model, discs, head_T_board)
-        except HoleMissing:
-            # Where one picture shows the board it lies for all of them.
-            if found:
-                raise
-            images = HeadImages(model, pair.left, pair.right)
-            head_T_board = await workers.run(pose_turned_like, images, discs, head_T_board)
-            measured = await _measured(workers, pair, model, discs, head_T_board)
+        images = HeadImages(model, pair.left, pair.right)
+        measured, head_T_board = await workers.run(
+            measured_board, images, head_T_board, may_lie_elsewhere=not found
+        )
         found.append(measured)
     return board_in_head(found), files
-
-
-async def _measured(
-    workers: VisionWorkers,
-    pair: StereoPair,
-    model: StereoHead,
-    discs: Sequence[Hole],
-    head_T_board: RigidTransform,
-) -> PairMeasurement:
-    return await workers.run(
-        measure_pair,
-        pair.left,
-        pair.right,
-        model,
-        discs,
-        # The board has nine equal discs and looks the same after half a turn; only a predicted
-        # pose tells which disc is which.
-        camera_T_part=head_T_board,
-        search_radius_m=SEARCH_RADIUS_M,
-    )
 
 
 def placed_again(look: BoardLook, image: Callable[[str], Image]) -> BoardPlacement:
@@ -157,22 +131,37 @@ def placed_again(look: BoardLook, image: Callable[[str], Image]) -> BoardPlaceme
 
     Raises the faults of vision and ``BoardPoseInvalid``.
     """
-    discs, head_T_board = board_discs(), look.head_T_board
+    head_T_board = look.head_T_board
     found: list[PairMeasurement] = []
-    for left, right in ((image(left), image(right)) for left, right in look.pairs):
-        search = partial(
-            measure_pair, left, right, look.model, discs, search_radius_m=SEARCH_RADIUS_M
-        )
-        try:
-            measured = search(camera_T_part=head_T_board)
-        except HoleMissing:
-            if found:
-                raise
-            images = HeadImages(look.model, left, right)
-            head_T_board = pose_turned_like(images, discs, head_T_board)
-            measured = search(camera_T_part=head_T_board)
+    for left, right in look.pairs:
+        images = HeadImages(look.model, image(left), image(right))
+        measured, head_T_board = measured_board(images, head_T_board, may_lie_elsewhere=not found)
         found.append(measured)
     return BoardPlacement(board_in_large_field(look.targets), board_in_head(found))
+
+
+def measured_board(
+    images: HeadImages, head_T_board: RigidTransform, *, may_lie_elsewhere: bool
+) -> tuple[PairMeasurement, RigidTransform]:
+    """The discs of the board in one pair of images, and roughly where the board lies.
+
+    It is looked for at ``head_T_board`` and, if it ``may_lie_elsewhere``, in the whole images: that
+    holds for the first pair alone, because where one pair shows the board it lies for all of them.
+    Raises the faults of vision.
+    """
+    discs = board_discs()
+    # The board has nine equal discs and looks the same after half a turn; only a predicted pose
+    # tells which disc is which.
+    search = partial(
+        measure_pair, images.left, images.right, images.head, discs, search_radius_m=SEARCH_RADIUS_M
+    )
+    try:
+        return search(camera_T_part=head_T_board), head_T_board
+    except HoleMissing:
+        if not may_lie_elsewhere:
+            raise
+    head_T_board = pose_turned_like(images, discs, head_T_board)
+    return search(camera_T_part=head_T_board), head_T_board
 
 
 def board_discs() -> list[Hole]:

@@ -1,9 +1,7 @@
 """Procedures 104 and 105: one board, seen twice before each head; both are needed, once."""
 
 import asyncio
-from collections.abc import Sequence
 from datetime import timedelta
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,7 +14,7 @@ from cellctl.errors.calibration import CalibrationMissing
 from cellctl.errors.link import ReplyTimeout
 from cellctl.errors.vision import HoleMissing
 from cellctl.geometry.pose import pose_error, pose_from_xyzabc
-from cellctl.procedures.target_board import PAIRS
+from cellctl.procedures.target_board import PAIRS, board_discs, measured_board
 from cellctl.processes.deck_to_frame.calibrations import (
     BASE_FRAME,
     BOARD_TRANSFER,
@@ -26,9 +24,12 @@ from cellctl.processes.deck_to_frame.calibrations import (
 from cellctl.runtime.procedure import ProcedureOutcome
 from cellctl.vision.camera.ellipse import Ellipse
 from cellctl.vision.features.hole import Hole
+from cellctl.vision.holes.search import HeadImages
 from cellctl.vision.measurement import HoleMeasurement, PairMeasurement
+from tests.rigs.calibration.drawn_discs import drawn_discs
 from tests.unit.procedures.large_field import FIELD_SIGMA_M, Field
 from tests.unit.procedures.rig import ProcedureRig
+from tests.unit.vision.plates import plate_facing, table_1_head
 
 HEAD_SIGMA_M = 5e-6
 BASE_T_C = {
@@ -46,7 +47,8 @@ class Boards:
         self.c_T_base = rig.bench.calibrations.read(BASE_FRAME).c_T_base.pose
         self.head_T_board = pose_from_xyzabc([5, -8, 505, 3, 1, 179])
         self.predicted: list[RigidTransform] = []
-        rig.answer(measure_pair=self._measure, transfer_picture=lambda _: b"png")
+        self.may_lie_elsewhere: list[bool] = []
+        rig.answer(measured_board=self._measure, transfer_picture=lambda _: b"png")
         self.field = Field.of(rig)
 
     def place(self, head: str) -> None:
@@ -58,12 +60,12 @@ class Boards:
         self.field.see(truth | {"F1": np.zeros(3)})
 
     def _measure(
-        self, left: Any, right: Any, model: object, discs: Sequence[Hole], *,
-        camera_T_part: RigidTransform, search_radius_m: float,
-    ) -> PairMeasurement:  # fmt: skip
-        assert search_radius_m < 0.04, "less than half the pitch of the discs"
-        self.predicted.append(camera_T_part)
-        return PairMeasurement("default", tuple(self._disc(disc) for disc in discs))
+        self, _images: HeadImages, head_T_board: RigidTransform, *, may_lie_elsewhere: bool
+    ) -> tuple[PairMeasurement, RigidTransform]:
+        self.predicted.append(head_T_board)
+        self.may_lie_elsewhere.append(may_lie_elsewhere)
+        discs = tuple(self._disc(disc) for disc in board_discs())
+        return PairMeasurement("default", discs), self.head_T_board
 
     def _disc(self, disc: Hole) -> HoleMeasurement:
         place = self.head_T_board.apply(disc.position_m) + self.rng.normal(0, HEAD_SIGMA_M, 3)
@@ -107,46 +109,45 @@ async def test_both_heads_are_found_in_the_base(rig: ProcedureRig, boards: Board
         np.testing.assert_allclose(robot.moves[turn].target, place)
 
 
-async def test_a_board_that_lies_elsewhere_is_looked_for_once(
+async def test_only_the_first_picture_of_a_head_is_looked_through_for_a_board_elsewhere(
     rig: ProcedureRig, boards: Boards
 ) -> None:
-    """With the first picture of a head, in the whole of it; the others look where it was found."""
-    elsewhere = pose_from_xyzabc([5, -8, 505, 3, 21, 179])
-    searched: list[RigidTransform] = []
-
-    def search(_images: object, _discs: object, told: RigidTransform) -> RigidTransform:
-        searched.append(told)
-        return elsewhere
-
-    def near(*seen: Any, camera_T_part: RigidTransform, search_radius_m: float) -> PairMeasurement:
-        if camera_T_part is not elsewhere:
-            raise HoleMissing("nothing like P7 was seen by both cameras")
-        return boards._measure(*seen, camera_T_part=camera_T_part, search_radius_m=search_radius_m)
-
-    rig.answer(measure_pair=near, pose_turned_like=search, transfer_picture=lambda _: b"png")
+    """The others look where it was found: what covers the board then ends the procedure."""
     for head, number in (("head_1", 104), ("head_2", 105)):
         boards.place(head)
         outcome = await half(rig, number)
     assert outcome is not None
     assert outcome.passed
-    assert len(searched) == 2
-    assert boards.predicted == [elsewhere] * 2 * PAIRS
+    assert boards.may_lie_elsewhere == 2 * [True, *[False] * (PAIRS - 1)]
+    for first in (0, PAIRS):
+        assert boards.predicted[first] is not boards.head_T_board
+        later = boards.predicted[first + 1 : first + PAIRS]
+        assert all(one is boards.head_T_board for one in later)
 
 
-async def test_a_board_that_is_covered_later_ends_the_procedure(
-    rig: ProcedureRig, boards: Boards
-) -> None:
-    """Someone reaches over the board: what was found before must not be looked for elsewhere."""
+DISCS = board_discs()
+LIES = plate_facing(4.0, -6.0, 3.0)
+HEAD = table_1_head()
+SEEN = HeadImages(HEAD, *drawn_discs(HEAD, LIES, DISCS))
+"""The board tilted by 3° about two axes."""
 
-    def covered(*seen: Any, **expected: Any) -> PairMeasurement:
-        if boards.predicted:
-            raise HoleMissing("nothing like P7 was seen by both cameras")
-        return boards._measure(*seen, **expected)
 
-    rig.answer(measure_pair=covered, pose_turned_like=pytest.fail)
-    boards.place("head_1")
+def test_a_board_that_lies_elsewhere_is_measured_where_it_is_found() -> None:
+    expected = plate_facing(50.0, 0.0)
+    measured, found = measured_board(SEEN, expected, may_lie_elsewhere=True)
+    distance_m, turn_rad = pose_error(LIES, found)
+    assert np.linalg.norm(distance_m) < 1e-3
+    assert np.degrees(np.linalg.norm(turn_rad)) < 1.0
+    assert len(measured.holes) == len(DISCS)
+    again, same = measured_board(SEEN, found, may_lie_elsewhere=False)
+    assert same is found
+    assert [hole.name for hole in again.holes] == [hole.name for hole in measured.holes]
+
+
+def test_a_board_that_is_covered_later_is_not_looked_for_elsewhere() -> None:
+    """What was found before must not be taken from another place of the images."""
     with pytest.raises(HoleMissing):
-        await half(rig, 104)
+        measured_board(SEEN, plate_facing(50.0, 0.0), may_lie_elsewhere=False)
 
 
 async def test_a_placement_serves_once(rig: ProcedureRig, boards: Boards) -> None:
