@@ -54,7 +54,7 @@ class RandomCell:
         recipes = tuple(self._recipe(cast(DeckRecipe, one)) for one in scene.cell.recipes)
         # Zones are drawn for one place of the station. Bodies keep the arms apart here.
         cell = scene.cell.model_copy(update={"recipes": recipes, "zones": {}})
-        return with_arms(replace(scene, cell=cell, solids=solids), arms)
+        return replace(scene, cell=cell, solids=solids).with_arms(arms)
 
     def _recipe(self, recipe: DeckRecipe) -> DeckRecipe:
         # The base of the main arm is the origin of the cell, and its axes are those of the cell.
@@ -89,12 +89,6 @@ def taught_at(arm: PlannedArm, pose: str, joints_rad: Array) -> PlannedArm:
     """The arm with this pose taught anew."""
     poses_deg = {**arm.config.poses_deg, pose: tuple(np.degrees(joints_rad).tolist())}
     return replace(arm, config=arm.config.model_copy(update={"poses_deg": poses_deg}))
-
-
-def with_arms(scene: CellScene, arms: Mapping[str, PlannedArm]) -> CellScene:
-    """The scene with these arms as they are configured now."""
-    robots = {**scene.cell.robots, **{name: arm.config for name, arm in arms.items()}}
-    return replace(scene, cell=scene.cell.model_copy(update={"robots": robots}), arms=arms)
 
 
 def random_cell(seed: int) -> RandomCell:

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from benchmarks.planning.cells import DECKS_M, RandomCell, taught_at, with_arms
+from benchmarks.planning.cells import DECKS_M, RandomCell, taught_at
 from cellctl.config.stated.views import StatedHead, StatedMeasurement, StatedPart
 from cellctl.geometry.pose import MM, Array
 from cellctl.planning.scene.cell_scene import CellScene
@@ -47,7 +47,7 @@ def with_planned_views(drawn: RandomCell) -> ViewedCell:
     arms = dict(scene.arms)
     for head, viewpoint in zip(statement.heads, views.best.viewpoints, strict=True):
         arms[head.robot] = taught_at(arms[head.robot], head.pose, viewpoint.joints_rad)
-    planned = with_arms(scene, arms)
+    planned = scene.with_arms(arms)
     seen = _all_in_images(planned, views)
     slack_mm = _least_slack_m(planned, statement) / MM if seen else -1.0
     return ViewedCell(planned, views.best.predicted.worst, slack_mm)

@@ -51,6 +51,11 @@ class CellScene:
         solids = tuple(solid for solid in self.solids if not procedures <= solid.absent_in)
         return replace(self, solids=solids)
 
+    def with_arms(self, arms: Mapping[str, PlannedArm]) -> "CellScene":
+        """The same with these arms, and with what they are configured to in its cell."""
+        robots = {**self.cell.robots, **{name: arm.config for name, arm in arms.items()}}
+        return replace(self, cell=self.cell.model_copy(update={"robots": robots}), arms=arms)
+
     def around(
         self,
         robot: str,

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellctl.config.cell import CellConfig
 from cellctl.config.devices import WayConfig
 from cellctl.config.stated.moves import MoveKind, StatedMove
 from cellctl.errors.config import NoFreeWay, PlaceUnreachable
@@ -75,17 +74,11 @@ def plan_ways(scene: CellScene, *, seed: int, search_s: float) -> Iterator[Plann
 
 def with_ways(scene: CellScene, ways: Sequence[PlannedWay]) -> CellScene:
     """The scene as it is when the cell file has these ways in place of those that it had."""
-    robots = {
-        name: robot.model_copy(
-            update={"ways": tuple(w for way in ways if way.robot == name for w in way.written())}
-        )
-        for name, robot in scene.cell.robots.items()
-    }
-    cell: CellConfig = scene.cell.model_copy(update={"robots": robots})
-    arms: dict[str, PlannedArm] = {
-        name: replace(arm, config=robots[name]) for name, arm in scene.arms.items()
-    }
-    return replace(scene, cell=cell, arms=arms)
+    arms: dict[str, PlannedArm] = {}
+    for name, arm in scene.arms.items():
+        written = tuple(one for way in ways if way.robot == name for one in way.written())
+        arms[name] = replace(arm, config=arm.config.model_copy(update={"ways": written}))
+    return scene.with_arms(arms)
 
 
 def _pairs(scene: CellScene) -> list[list[StatedMove]]:
