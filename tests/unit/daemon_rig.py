@@ -35,6 +35,7 @@ from tests.unit.processes.deck_to_frame.rig import curve, seated
 
 WAIT_S = 60.0
 """Time for what has to come: long, since only a test that fails waits for it to its end."""
+POLL_S = 0.002
 BY_ANNA: dict[str, Any] = {"source": Source.TERMINAL, "person": "anna"}
 
 
@@ -202,7 +203,8 @@ class DaemonRig:
     async def until(self, condition: Callable[[], bool]) -> None:
         async with asyncio.timeout(WAIT_S):
             while not condition():  # noqa: ASYNC110 - whatever the unit does next may be it
-                await asyncio.sleep(0)
+                # Not at every turn of the loop: the store's thread needs the interpreter meanwhile.
+                await asyncio.sleep(POLL_S)
 
     async def runs(self) -> list[RunHead]:
         await self.unit.background.drain()
