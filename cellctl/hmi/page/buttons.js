@@ -31,7 +31,7 @@ export function whyNot(name) {
   if (stale()) return t("stale_button");
   if (name === "acknowledge") return "";
   const permission = cell.snapshot?.permitted?.[name];
-  if (!permission) return t("unknown");
+  if (typeof permission?.code !== "number") return t("unknown");
   return permission.code ? given(`reject_${permission.code}`, permission.reason) : "";
 }
 
@@ -128,7 +128,7 @@ function made(name) {
 // What was asked of the cell last, by whom and when.
 function latest() {
   const last = cell.snapshot?.last_command;
-  return last ? t("last_command", given(`cmd_${last.command}`, last.command), last.who.replace(/^page:/, ""), clock(last.time)) : "";
+  return last ? t("last_command", given(`cmd_${last.command}`, last.command), last.who?.replace(/^page:/, ""), clock(last.time)) : "";
 }
 
 export const controls = (names) => h("div", { class: "buttons" }, names.map(made));

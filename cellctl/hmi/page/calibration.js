@@ -9,6 +9,7 @@ const DUE_DAYS = 14;
 
 export function life(one) {
   if (one.problem) return h("span", { class: "bad" }, `■ ${spoken(one.problem)}`);
+  if (!one.valid_until) return "—";
   const days = (new Date(one.valid_until) - Date.now()) / 86400000;
   if (days < DUE_DAYS) return h("span", { class: "p2" }, `▲ ${t("due_in", Math.max(0, Math.floor(days)))}`);
   return h("span", {}, t("valid"));

@@ -39,7 +39,7 @@ export function time(text) {
 }
 
 export function clock(text) {
-  return new Date(text).toLocaleTimeString(CLOCK);
+  return text ? new Date(text).toLocaleTimeString(CLOCK) : "—";
 }
 
 // A browser complains of an entry in its own language: here it is the page's.

@@ -4,6 +4,7 @@ import { ask } from "./api.js";
 import { give, visitor, whyNot } from "./buttons.js";
 import { h, num, shown, table, time } from "./dom.js";
 import { ageS, cell } from "./live.js";
+import { alive } from "./line.js";
 import { given, label, spoken, t } from "./texts.js";
 
 // A command has the word of its button; what it was about stands behind it.
@@ -11,7 +12,7 @@ function done({ action, detail }) {
   if (action === "set") {
     return detail.acknowledged ? `${t("cmd_acknowledge")} F${detail.acknowledged}` : `${t("cmd_mode")} ${given(`mode_${(detail.mode || "").toUpperCase()}`, detail.mode || "—")}`;
   }
-  const command = given(`cmd_${action}`, "") || given(`audit_${action}`, action);
+  const command = given(`cmd_${action}`, given(`audit_${action}`, action));
   const of = action === "start" ? [detail.mode === "maintenance" ? t("procedure") : t("recipe"), detail.recipe, detail.serial] : [detail.procedure && label(detail.procedure)];
   return [command, ...of].filter(Boolean).join(" ");
 }
@@ -20,6 +21,12 @@ function done({ action, detail }) {
 function why({ detail }) {
   const refused = detail.refused ? `■ ${t("refused", given(`reject_${detail.reject_code}`, detail.refused))}` : "";
   return [detail.reason, refused].filter(Boolean).join(" · ");
+}
+
+// Nothing is wrong with a device that says so: one of which nothing was said is no such device.
+function link(problem) {
+  if (problem === null) return "—";
+  return problem ? h("span", { class: "bad" }, `■ ${spoken(problem)}`) : t("answers");
 }
 
 async function more(root) {
@@ -47,9 +54,9 @@ export function update(root) {
   const s = cell.snapshot;
   const place = root.querySelector("#links");
   if (!s || !place) return;
-  const rows = Object.entries(s.links).map(([name, problem]) => [name, problem ? h("span", { class: "bad" }, `■ ${spoken(problem)}`) : t("answers"), ""]);
+  const rows = Object.entries(s.links).map(([name, problem]) => [name, link(problem), ""]);
   for (const force of s.forces) rows.push([force.sensor, t("sample_age"), num(`${shown(force.age_s === null ? null : force.age_s * 1000, 0)} ms`)]);
-  rows.push([t("line_plc"), t(s.line_alive ? "alive" : "not_there"), ""]);
+  rows.push([t("line_plc"), alive(s), ""]);
   rows.push([t("this_page"), t("sample_age"), num(`${shown(ageS() * 1000, 0)} ms`)]);
   place.replaceChildren(h("h2", {}, t("links")), h("div", { class: "live" }, table([t("device"), t("state"), num(t("age"))], rows)));
   const reason = whyNot("mode");

@@ -10,6 +10,8 @@ function block(writer) {
   return [h("h2", {}, t(`registers_${writer}`)), table([num(t("address")), t("label"), num(t("value")), t("meaning")], rows)];
 }
 
+export const alive = (s) => (s.line_alive === null ? "—" : t(s.line_alive ? "alive" : "not_there"));
+
 let drawn = null;
 export function build(root) {
   drawn = null;
@@ -18,9 +20,9 @@ export function build(root) {
 }
 
 export function update(root) {
-  const alive = root.querySelector("#line-alive");
-  if (!alive || !cell.snapshot) return;
-  alive.textContent = `${t("line_plc")}${colon()}${t(cell.snapshot.line_alive ? "alive" : "not_there")} · ${t(`control_${cell.snapshot.control}`)}`;
+  const place = root.querySelector("#line-alive");
+  if (!place || !cell.snapshot) return;
+  place.textContent = `${t("line_plc")}${colon()}${alive(cell.snapshot)} · ${t(`control_${cell.snapshot.control}`)}`;
   if (drawn === cell.description) return;
   drawn = cell.description;
   root.querySelector("#from-cell").replaceChildren(...block("cell"));

@@ -4,6 +4,8 @@
 // two PCs need to agree: the page asks for the cell's clock at its own time t0 and is answered m, so at
 // its time p the cell's clock is at most m + (p - t0).
 
+import { whole } from "./whole.js";
+
 const STALE_S = 1.5;
 const CLOCK_EVERY_MS = 2000;
 const CLOCKS_KEPT = 30;
@@ -43,7 +45,7 @@ async function askClock() {
 
 function take(kind, event) {
   heardS = page();
-  cell[kind] = JSON.parse(event.data);
+  cell[kind] = whole(kind, JSON.parse(event.data));
   cell.refused = "";
   tell(kind);
 }

@@ -120,7 +120,7 @@ function draw(root, s, one) {
   write(root.querySelector("#outcome"), outcome(s, at));
   if (at === "under_way") { ticks.clear(); for (const box of root.querySelectorAll("[id^=tick-]")) box.checked = false; }
   const last = s.last_command;
-  root.querySelector("#who-runs").textContent = at === "under_way" && last ? t("last_command", t("asked_last"), last.who.replace(/^page:/, ""), `${given(`cmd_${last.command}`, last.command)} ${time(last.time)}`) : "";
+  root.querySelector("#who-runs").textContent = at === "under_way" && last ? t("last_command", t("asked_last"), last.who?.replace(/^page:/, ""), `${given(`cmd_${last.command}`, last.command)} ${time(last.time)}`) : "";
 }
 
 export function build(root, number) {

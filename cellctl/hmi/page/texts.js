@@ -24,14 +24,15 @@ export async function change() {
 
 export const other = () => LANGUAGES[language === "en" ? "zh" : "en"];
 
-// {0}, {1} stand for what is given besides.
+// {0}, {1} stand for what is given besides. What the cell has not said is a dash, as a word ("state_")
+// and as a value.
 export function t(key, ...values) {
-  const text = words[key] ?? fallback[key] ?? key;
-  return values.reduce((done, value, i) => done.replaceAll(`{${i}}`, value), text);
+  const text = words[key] ?? fallback[key] ?? (key.endsWith("_") ? "—" : key);
+  return values.reduce((done, value, i) => done.replaceAll(`{${i}}`, value ?? "—"), text);
 }
 
 // What the daemon said in English, unless the language has words of its own for its number.
-export const given = (key, english) => words[key] ?? (english || (fallback[key] ?? ""));
+export const given = (key, english) => words[key] ?? (english || (fallback[key] ?? "—"));
 
 export const colon = () => (language === "zh" ? "：" : ": ");
 

@@ -10,6 +10,15 @@ SIZE = {"width": 1280, "height": 800}
 MOTION = ("start", "reset", "unhold")
 
 
+STREAMS = """(() => {
+    const Source = window.EventSource;
+    window.streams = [];
+    window.EventSource = class extends Source {
+        constructor(...given) { super(...given); window.streams.push(this); }
+    };
+})()"""
+
+
 class Tabs:
     """Tabs of one Chromium, each of a person of its own, handed on from test to test.
 
@@ -82,6 +91,12 @@ class Screen:
         self.tab.fill("#pin", PIN)
         self.tab.press("#pin", "Enter")
         expect(self.tab.locator("#who")).to_contain_text(name)
+
+    def listen(self) -> None:
+        """Load the page anew, with its streams in ``window.streams`` for a test to speak there."""
+        self.tab.add_init_script(STREAMS)
+        self.tab.reload()
+        expect(self.tab.locator("#age")).to_contain_text("live", timeout=15_000)
 
     def button(self, name: str) -> Any:
         return self.tab.locator(f"#cmd-{name}")
