@@ -55,11 +55,13 @@ class Cell:
         self.robot_notes = RobotNotes()
         self.run_notes = RunNotes()
         self.digital_ios = drivers_of(config, "digital_ios", PatientIo)
+        # The layers of a robot, from the driver outwards. Their order matters: patience bounds the
+        # driver alone; what is noted is what was sent, after it was slowed; and a move that waits
+        # for its zone has reached none of them, so that no time runs and nothing is noted yet.
         built = [
             permitted(config, one, self.digital_ios)
             for one in drivers_of(config, "robots", patient_robot).values()
         ]
-        # Behind the zones: a move is noted when the arm is told, not while it waits for its way.
         noted = map(self.robot_notes.noted, built)
         self.pace = MaintenancePace()
         moving = slowed(config, {robot.name: robot for robot in noted}, self.pace)

@@ -78,7 +78,10 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
     loop = asyncio.get_running_loop()
     for number in SIGNALS:
         loop.add_signal_handler(number, tell, number)
-    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # helpers of multiprocessing inherit it
+    # A terminal that is closed sends SIGHUP to every process of it. The helpers that
+    # multiprocessing starts with ``Cell`` inherit that it is ignored, so that the daemon alone
+    # answers and ends them in order; its own handler comes when they are there.
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
     async with AsyncExitStack() as stack:
         data_dir = overrides.data_dir or Path(config.data_dir)
         store = AsyncRunStore(data_dir)
@@ -102,7 +105,9 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         )
         publisher = StatusPublisher(unit, partial(_show, plc, local.feed, cell.run_notes))
         stack.push_async_callback(plc.stop)
-        await plc.start()  # first of all: a second daemon must not take over the robots
+        # Before any device is connected: the port is bound once on a PC, so a second daemon of the
+        # same cell ends here and does not take over the robots.
+        await plc.start()
         stack.push_async_callback(local.server.stop)
         await local.server.start()
         stack.push_async_callback(cell.disconnect)

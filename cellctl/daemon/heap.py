@@ -25,16 +25,16 @@ def give_back_large_blocks() -> bool:
 
 
 def hold_collections() -> None:
-    """No search for unused cycles while the daemon is loaded: next to nothing of it is unused, and
-    the searches take a tenth of the start."""
+    """No garbage collection while the daemon is loaded: next to nothing of it is garbage, and the
+    collections take a tenth of the start."""
     gc.disable()
 
 
 def collect_what_comes() -> None:
-    """Search again, but not through what is there already; nothing unless searches were held.
+    """Collect again, but leave out what exists already; nothing unless collections were held.
 
     Modules, their classes and the cell's configuration stay as long as the daemon does. Each full
-    search would go through all of them, while the event loop stands.
+    collection would go through all of them, while the event loop stands.
     """
     if not gc.isenabled():
         gc.freeze()

@@ -26,7 +26,7 @@ _PARKED = frozenset({State.HOLDING, State.HELD, State.SUSPENDING, State.SUSPENDE
 
 
 class PanelWatch:
-    """Reports an arm that stands once, at the look after the one that found it."""
+    """Reports what is wrong with an arm that stands: once, and one look after it was found."""
 
     def __init__(self, cell: Cell, unit: UnitController) -> None:
         self._cell = cell
@@ -47,8 +47,9 @@ class PanelWatch:
             return
         told, self._found = self._found, self._look()
         for name, fault in told.items():
-            # Robot and guard tell of a touch one after the other: what is latched by nobody for one
-            # look is none.
+            # A touch latches robot and guard, whose reports come one after the other. A latch that
+            # looked for one look as if nobody had asked for it may be that of a touch; one that
+            # still does is not.
             if name in self._found or not isinstance(fault, NotRearmed):
                 await self._unit.machine.fail(fault)
 

@@ -20,9 +20,14 @@ from cellctl.records.async_store import AsyncRunStore
 from cellctl.runtime.unit import UnitController
 
 PUBLISH_PERIOD_S = 0.1
+"""Registers, page and recording get what has changed ten times a second. A change of state does not
+wait for that: it is shown at once."""
 LINK_PERIOD_S = 0.25
+"""A robot counts as silent after 1 s and a guard after 1 s: a quarter of that is added at most."""
 ASK_PERIOD_S = 2.0
+"""A question occupies a camera for as long as its answer takes, and it is asked only at rest."""
 DISK_PERIOD_S = 2.0
+"""Each look in a run writes once and waits for the disk; between runs it asks for room."""
 LEDGER_PERIOD_S = 10.0
 """A look reads two rows of the store. Whoever cuts the ledger and lets the daemon go on is found
 before the next report is printed."""

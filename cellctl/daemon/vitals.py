@@ -22,7 +22,9 @@ class DaemonVitals:
     ) -> None:
         """``line_beat_age_s``: since the counter of the line PLC has changed, None before."""
         self._line_beat_age_s, self._clock = line_beat_age_s, clock
-        # Of each turn that was later than all that came after it; the first is the latest.
+        # (time, lateness) of the turns that were later than every turn after them. So the lateness
+        # falls from the first to the last, and the first is the greatest of the window: that costs
+        # a few entries in place of all turns of fifteen seconds.
         self._late: deque[tuple[float, float]] = deque()
 
     def turn(self, late_s: float) -> None:

@@ -70,7 +70,7 @@ class GuardClient:
         self._serial = ""  # serial number and firmware, as the sensor's driver says them
         self._degraded: tuple[str, ...] = ()
         self._gravity_compensation: Message | None = None
-        self.hidden_axial_n: float | None = None  # by the zero; None: nobody has taken one
+        self.hidden_axial_n: float | None = None  # axial force in the zero; None: no zero taken
         self._wrench_frame: Message | None = None
         """The wrench frame that was set last; None for the sensor's own."""
 
@@ -262,7 +262,7 @@ class GuardClient:
                 self._settle_start(None)
         elif event == "channel":
             self._take_channel(up=message["up"], fault=message["fault"])
-        else:
+        else:  # failed: no start; sensor_fault: the sensor was given up
             self._fault = fault_from_json(message)
             _log.error("guard reports a fault", fault=str(self._fault), sensor=self._serial)
             self._settle_start(self._fault)

@@ -34,6 +34,8 @@ _LONGEST_BYTES = 65_536
 
 def encode(message: Message) -> bytes:
     """The bytes of a message, for one packet."""
+    # A limit that is not watched is infinite, which Python writes as ``Infinity``. That is no JSON,
+    # but both ends of this socket are Python.
     return json.dumps(message, separators=(",", ":")).encode()
 
 

@@ -12,7 +12,11 @@ End = Callable[[ContactSample], Ended | None]
 SOFTEST = 2.0
 """How many times softer than along the hole arm and contact may be across it."""
 _REPEATABLE_M = 0.1e-3
+"""What the way of an arm is known to: so far it may seem to go without leaving its contact."""
 _LEAST_CHANGE_N, _LEAST_SIGMAS = 1.0, 8.0
+"""Least change of a force that means something: in N, for friction, and in standard deviations of
+one reading. The difference of two readings scatters by √2 of one, and motions compare two at each
+tick: with eight, more than five of the difference, chance has no part in it."""
 
 
 def least_change_n(force_sigma_n: float) -> float:

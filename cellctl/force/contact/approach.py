@@ -142,6 +142,7 @@ def segment_length(figures: ApproachFigures, *, limit_n: float) -> float:
     # there.
     spare_n = limit_n - figures.touch.drift_n - figures.tare_uncertainty_n
     length_m = spare_n / figures.stiffness_n_m - 3.0 * figures.step_sigma_m
+    # A move that is no longer than its own error may as well stand still or go back.
     if length_m <= figures.step_sigma_m:
         raise ContactPlanInvalid(
             f"a single move cannot be kept below {limit_n:.1f} N: stiffness "

@@ -64,6 +64,8 @@ def seat_limits(
     half_x_m, half_y_m = half_size_m
     margin_x_n_m, margin_y_n_m = EDGE_MARGIN_N_M
     lateral_n = REST_RATIO * max_lateral_n
+    # The moment about z has the ratio once more, on top of that of the side force: 8 N·m for the
+    # paper's deck (docs/mating.md).
     return SeatLimits(
         force_low_n=target_force_n,
         # Below the guard's limit: the noise of a force that the seat allows must not trip it.

@@ -11,7 +11,8 @@ _STEP_RAD = 0.15
 """Angle between two points of a turn: the straight lines between them lie within 0.3 % of the
 radius inside the spiral, a few micrometres at 1 mm."""
 _FASTEST_RAD_S = 2.0
-"""Greatest rate at which the direction of the way turns."""
+"""Greatest rate at which the direction of the way turns: no turn takes less than three seconds,
+however small it is."""
 
 
 def expanding_turns(

@@ -51,7 +51,9 @@ class LowPass:
         if state is None:
             self._state, self._time_s = wrench, time_s
             return wrench
-        # A sample time that stands still or goes back has no weight and does not upset the filter.
+        # 1 - exp(-t/T) is exact for a value that is held between two samples, whatever time t lies
+        # between them. A sample time that stands still or goes back has no weight and does not
+        # upset the filter.
         gain = -math.expm1(-max(0.0, time_s - self._time_s) / self.time_constant_s)
         self._time_s = time_s
         a, b, c, d, e, f = wrench

@@ -19,6 +19,8 @@ from cellctl.vision.rim.shape import RimPixels
 from cellctl.vision.rim.spread import ImageSpread
 
 _BAND_INSIDE_PX, _DENSE_PX = 6.5, 2.5
+"""Width of the band inside the rim, and of the strip on either side of its edge of which every
+pixel is used. An edge is blurred over one or two pixels; beyond the strip there are levels only."""
 _INSIDE_RING_PX, _BESIDE_RING_PX = 3.0, 3.5
 """Width of the band inside a rim with a ring, and beyond the ring: the ring itself carries most of
 what is to be learnt, and the turns of a thread farther in only disturb."""
@@ -33,7 +35,9 @@ _EDGE_PX, _LEAST_OUTSIDE_PX = 2.5, 1.0
 _AZIMUTHS, _SECTOR = 60, 5
 """Rays round the rim, and how many neighbours are averaged."""
 _STEP_PX = 0.5
+"""Distance of the samples along a ray."""
 _OWN_EDGE_PX = 1.5
+"""Up to here outside the rim the slope is that of its own blurred edge."""
 _LEAST_SHARE, _SIGMAS = 0.06, 5.0
 """Slopes that count as an edge: of the rim's own slope, and over the noise."""
 

@@ -30,6 +30,7 @@ class PathFollower:
     @property
     def arrived(self) -> bool:
         """True at the last point."""
+        # But for rounding; the first term serves a path of no length.
         return self.remaining <= 1e-12 + 1e-9 * float(self._marks[-1])
 
     @property
