@@ -18,7 +18,6 @@ from sqlalchemy.pool import NullPool
 
 from cellctl.errors.records import FleetDiffers, StoreTooNew, StoreUnavailable
 from cellctl.fleet.tables import table_of
-from cellctl.records.database.ledger import GENESIS
 from cellctl.records.database.schema import LedgerRow, RunRow
 from cellctl.records.database.schema_1.tables import (
     IterationOfSchema1,
@@ -26,7 +25,8 @@ from cellctl.records.database.schema_1.tables import (
     RunOfSchema1,
 )
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
-from cellctl.records.database.sealed import (
+from cellctl.records.database.sealing.ledger import GENESIS
+from cellctl.records.database.sealing.sealed import (
     ACKNOWLEDGEMENT,
     ALARM,
     CALIBRATION,
@@ -35,7 +35,7 @@ from cellctl.records.database.sealed import (
     KINDS,
     RUN,
 )
-from cellctl.records.database.written_details import DETAILS
+from cellctl.records.database.sealing.written_details import DETAILS
 from cellctl.records.seals import LedgerHead
 
 START = LedgerHead(0, GENESIS)

@@ -11,9 +11,10 @@ from sqlalchemy.types import NullType
 from cellctl.errors.records import FleetRefused
 from cellctl.fleet.database import FleetDatabase
 from cellctl.fleet.tables import CellRow, DeliveryRow
-from cellctl.records.database import ledger, reading
+from cellctl.records.database import reading
 from cellctl.records.database.rows import to_entry
 from cellctl.records.database.schema import GaugeRow, RunRow
+from cellctl.records.database.sealing import ledger
 from cellctl.records.entered.gauges import part_verdict
 from cellctl.records.entries import AuditEntry, RunHead, RunRecord, RunResult
 from cellctl.records.run_filter import RunFilter

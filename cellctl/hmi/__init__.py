@@ -1,7 +1,7 @@
 """The operator page and the HTTP API, in a process of their own.
 
 ``daemon_link`` follows the daemon over its socket and brings it commands. ``hub`` keeps the newest
-snapshot, which ``event_stream`` sends on to every browser as it came. ``people``, ``sessions``,
-``access`` and ``rates`` say who asks, what they may ask and how often. ``routes`` is the API,
-``page/`` the page. Nothing here decides what the cell does: the daemon checks every command again.
+snapshot, which ``event_stream`` sends on to every browser as it came. ``visitors`` says who asks,
+what they may ask and how often. ``routes`` is the API, ``page/`` the page. Nothing here decides
+what the cell does: the daemon checks every command again.
 """

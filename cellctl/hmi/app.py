@@ -9,7 +9,6 @@ from pathlib import Path
 from fastapi import FastAPI
 from starlette.types import ASGIApp
 
-from cellctl.hmi.access import Gatekeeper
 from cellctl.hmi.answers.document import DESCRIPTION, TAGS, operation_id, worded
 from cellctl.hmi.archive import ArchiveReader
 from cellctl.hmi.daemon_link import DaemonLink
@@ -17,9 +16,7 @@ from cellctl.hmi.event_stream import Streams
 from cellctl.hmi.hub import Hub
 from cellctl.hmi.metrics.keeper import MetricsKeeper
 from cellctl.hmi.notifying.notifier import Notifier
-from cellctl.hmi.people import People
 from cellctl.hmi.problems import RESPONSES, add_handlers
-from cellctl.hmi.rates import RateLimit
 from cellctl.hmi.routes import (
     alarms,
     calibrations,
@@ -35,9 +32,12 @@ from cellctl.hmi.routes import (
     session,
 )
 from cellctl.hmi.routes.exports import RunExporter
-from cellctl.hmi.sessions import Sessions
 from cellctl.hmi.settings import LOOPBACK, PageSettings
 from cellctl.hmi.shell import Shell
+from cellctl.hmi.visitors.access import Gatekeeper
+from cellctl.hmi.visitors.people import People
+from cellctl.hmi.visitors.rates import RateLimit
+from cellctl.hmi.visitors.sessions import Sessions
 from cellctl.version import software
 
 COMMANDS_A_MINUTE = 20

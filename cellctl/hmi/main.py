@@ -17,8 +17,8 @@ from cellctl.errors.local import PageCannotServe
 from cellctl.hmi.app import hmi_app
 from cellctl.hmi.notifying.notifier import sender_of
 from cellctl.hmi.notifying.senders import NotTold
-from cellctl.hmi.people import secret_of
 from cellctl.hmi.settings import PageSettings, load_settings
+from cellctl.hmi.visitors.people import secret_of
 
 SEND_BUFFER = 64 * 1024
 TAKE_TIMEOUT_MS = 10_000

@@ -6,8 +6,8 @@ from collections.abc import Set
 from starlette.requests import Request
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from cellctl.hmi.hosts import host_name
 from cellctl.hmi.problems import answer
+from cellctl.hmi.visitors.hosts import host_name
 
 BODY_LIMIT = 64 * 1024
 BODY_S = 10.0

@@ -12,12 +12,13 @@ from typing import Any, BinaryIO
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import RecordAltered
-from cellctl.records.database import ledger, reading, rows, schema, sealed, sealed_details
+from cellctl.records.database import reading, rows, schema
 from cellctl.records.database.claimed_version import foreign_parts
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
+from cellctl.records.database.sealing import ledger, sealed, sealed_details
+from cellctl.records.database.sealing.written_details import WrittenDetails
 from cellctl.records.database.sessions import LOCK_WAIT_S, Database
 from cellctl.records.database.stored_records import LINE_SEQ, StoredRecords
-from cellctl.records.database.written_details import WrittenDetails
 from cellctl.records.entered.gauges import require_gauge, require_plausible
 from cellctl.records.entries import RunDetail, RunResult
 from cellctl.records.files.artefacts import ArtefactFolder

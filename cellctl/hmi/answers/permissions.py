@@ -5,8 +5,8 @@ from typing import Any
 
 from cellctl.api.local_socket.messages import Role
 from cellctl.api.local_socket.page_desk import needed_role, not_theirs
-from cellctl.hmi.access import Visitor
 from cellctl.hmi.answers.form import Form
+from cellctl.hmi.visitors.access import Visitor
 from cellctl.hmi.words.page_words import refusal
 from cellctl.packml.reject import RejectCode
 

@@ -7,10 +7,10 @@ from fastapi import APIRouter, Path, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from cellctl.clock import utc_now
-from cellctl.hmi.access import Asked
 from cellctl.hmi.answers.alarms import AlarmList, AlarmTold, alarm_list, alarm_told
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.parameters import MOST
+from cellctl.hmi.visitors.access import Asked
 from cellctl.hmi.words.languages import Language
 from cellctl.records.entries import Alarm
 from cellctl.records.run_filter import AlarmFilter

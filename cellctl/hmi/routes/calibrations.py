@@ -5,10 +5,10 @@ from typing import Annotated
 from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel, ConfigDict, Field
 
-from cellctl.hmi.access import Asked
 from cellctl.hmi.answers.calibrations import CalibrationList, CalibrationRecord, CellCalibrations
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.parameters import CalibrationId
+from cellctl.hmi.visitors.access import Asked
 
 router = APIRouter(tags=["calibrations"])
 

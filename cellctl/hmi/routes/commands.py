@@ -16,10 +16,10 @@ from cellctl.api.local_socket.messages import (
 )
 from cellctl.clock import now_s
 from cellctl.errors.local import DaemonNotReached, StopNotDelivered
-from cellctl.hmi.access import OWN_PAGE, Asked, Visitor
 from cellctl.hmi.answers.commands import CommandTold, command_told
 from cellctl.hmi.daemon_link import AnswerMissing
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.visitors.access import OWN_PAGE, Asked, Visitor
 from cellctl.packml.reject import RejectCode
 
 router = APIRouter(tags=["commands"])

@@ -14,9 +14,9 @@ from fastapi import APIRouter, Query, Request
 from fastapi.responses import Response, StreamingResponse
 from starlette.types import Receive, Scope, Send
 
-from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.parameters import RunNumber
+from cellctl.hmi.visitors.access import Asked
 
 router = APIRouter(tags=["records"])
 REPORT_S = 60.0

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path, Query, Request
 
-from cellctl.hmi.access import Asked
 from cellctl.hmi.answers.line import Register, RegisterList, register_list
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.live import fresh
+from cellctl.hmi.visitors.access import Asked
 
 router = APIRouter(prefix="/plc", tags=["live"])
 Name = Annotated[str, Path(description="Name of the item in the register map, such as `state`.")]

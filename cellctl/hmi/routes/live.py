@@ -7,9 +7,9 @@ from fastapi.responses import StreamingResponse
 
 from cellctl.clock import now_s
 from cellctl.fault_catalogue import known_fault
-from cellctl.hmi.access import Asked
 from cellctl.hmi.answers.permissions import Permission, permissions
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.visitors.access import Asked
 from cellctl.hmi.words.languages import Language
 from cellctl.hmi.words.spoken import description_in, snapshot_in
 from cellctl.translations import fault_words

@@ -4,7 +4,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import Response
 from prometheus_client import CONTENT_TYPE_LATEST
 
-from cellctl.hmi.access import Asked
+from cellctl.hmi.visitors.access import Asked
 
 router = APIRouter(tags=["live"])
 

@@ -4,10 +4,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Path, Request
 
-from cellctl.hmi.access import Asked
 from cellctl.hmi.answers.procedures import ProcedureList, ProcedureTold, procedure_told
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.live import fresh
+from cellctl.hmi.visitors.access import Asked
 from cellctl.hmi.words.languages import Language
 from cellctl.hmi.words.spoken import description_in, snapshot_in
 

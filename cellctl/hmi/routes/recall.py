@@ -5,7 +5,6 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Query, Request
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
-from cellctl.hmi.access import Asked
 from cellctl.hmi.answers.calibrations import CellCalibrations
 from cellctl.hmi.answers.recall import (
     CalibrationRecall,
@@ -16,6 +15,7 @@ from cellctl.hmi.answers.recall import (
 )
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.parameters import MOST, CalibrationId
+from cellctl.hmi.visitors.access import Asked
 from cellctl.hmi.words.languages import Language
 from cellctl.records.entries import RunRecord
 from cellctl.records.parts import RUNS_OF_A_PART

@@ -7,9 +7,9 @@ from fastapi.responses import Response
 from pydantic import AwareDatetime, BaseModel, ConfigDict, Field
 
 from cellctl.api.local_socket.messages import Role
-from cellctl.hmi.access import Asked
 from cellctl.hmi.problems import Problem
 from cellctl.hmi.routes.parameters import MOST, RunNumber
+from cellctl.hmi.visitors.access import Asked
 from cellctl.hmi.words.languages import Language
 from cellctl.hmi.words.spoken import run_in
 from cellctl.records.run_filter import RunFilter

@@ -6,10 +6,10 @@ from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, ConfigDict, Field
 
 from cellctl import log
-from cellctl.hmi.access import OWN_PAGE, Asked, Visitor, address_of
 from cellctl.hmi.answers.document import COOKIE
 from cellctl.hmi.answers.permissions import SessionTold, session_told
 from cellctl.hmi.problems import Problem
+from cellctl.hmi.visitors.access import OWN_PAGE, Asked, Visitor, address_of
 from cellctl.hmi.words.languages import Language
 
 router = APIRouter(tags=["session"])

@@ -1,1 +1,1 @@
-"""The SQLite file behind the run store: tables, migration, seals."""
+"""The SQLite file behind the run store: tables, migration, reading; ``sealing`` proves it whole."""

@@ -13,7 +13,7 @@ from pathlib import Path
 from sqlalchemy import Connection, inspect, text
 
 from cellctl.errors.records import StoreContradictsVersion
-from cellctl.records.database.sealed import GAUGE, KINDS, PROGRESS, RUN
+from cellctl.records.database.sealing.sealed import GAUGE, KINDS, PROGRESS, RUN
 
 _CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {
     1: (("runs", "number"), ("ledger", "hash")),

@@ -20,11 +20,11 @@ from cellctl.clock import utc_now
 from cellctl.errors.records import StoreTooNew
 from cellctl.files.atomic_files import sync_folder
 from cellctl.records.database.claimed_version import require_claimed
-from cellctl.records.database.ledger import seal_unsealed
 from cellctl.records.database.schema import Base, DocumentRow, LedgerRow
 from cellctl.records.database.schema_1.tables import PROCESS
 from cellctl.records.database.schema_version import SCHEMA_VERSION
-from cellctl.records.database.sealed import SEALED_FROM_3_ON
+from cellctl.records.database.sealing.ledger import seal_unsealed
+from cellctl.records.database.sealing.sealed import SEALED_FROM_3_ON
 
 
 def bring_up_to_date(connection: Connection, file: Path) -> None:

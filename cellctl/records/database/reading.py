@@ -25,7 +25,7 @@ from cellctl.records.database.schema import (
     PoseRow,
     RunRow,
 )
-from cellctl.records.database.sealed import RUN
+from cellctl.records.database.sealing.sealed import RUN
 from cellctl.records.entries import (
     PRODUCTION,
     Alarm,

@@ -11,7 +11,6 @@ from sqlalchemy.orm import Session
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
 from cellctl.errors.records import RunClosed, RunUnknown
-from cellctl.records.database import ledger
 from cellctl.records.database.schema import (
     AlarmRow,
     ArtefactRow,
@@ -24,7 +23,8 @@ from cellctl.records.database.schema import (
     PoseRow,
     RunRow,
 )
-from cellctl.records.database.sealed import RUN
+from cellctl.records.database.sealing import ledger
+from cellctl.records.database.sealing.sealed import RUN
 from cellctl.records.entries import (
     Document,
     Figure,

@@ -218,7 +218,7 @@ class LedgerRow(Base):
     number: Mapped[int] = mapped_column(primary_key=True)
     time: Mapped[datetime]
     kind: Mapped[str]
-    """One of the kinds of ``sealed.py``."""
+    """One of the kinds of ``sealing/sealed.py``."""
     subject: Mapped[int]
     """Number of the run or id of the row; 0 for a subject that has a name."""
     name: Mapped[str | None]

@@ -2,8 +2,9 @@
 
 from datetime import datetime
 
-from cellctl.records.database import ledger, reading, rows, schema
-from cellctl.records.database.sealed import RUN
+from cellctl.records.database import reading, rows, schema
+from cellctl.records.database.sealing import ledger
+from cellctl.records.database.sealing.sealed import RUN
 from cellctl.records.database.sessions import Database
 from cellctl.records.entries import Alarm, AuditEntry, Calibration, Phase, RunHead, RunRecord
 from cellctl.records.run_filter import AlarmFilter

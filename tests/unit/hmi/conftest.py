@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from cellctl.calibration.store.envelope import StoredCalibration
-from cellctl.hmi.people import secret_of
+from cellctl.hmi.visitors.people import secret_of
 from cellctl.records.figures import Limit, figure
 from cellctl.records.store import RunStore
 from tests.unit.hmi.http_client import Client

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from typer.testing import CliRunner
 
 from cellctl.errors.local import PageCannotServe, PageSettingsWrong
-from cellctl.hmi.hosts import host_name
 from cellctl.hmi.main import app, page_server
-from cellctl.hmi.people import matches, secret_of
-from cellctl.hmi.rates import RateLimit
-from cellctl.hmi.sessions import Sessions
 from cellctl.hmi.settings import PageSettings, load_settings
+from cellctl.hmi.visitors.hosts import host_name
+from cellctl.hmi.visitors.people import matches, secret_of
+from cellctl.hmi.visitors.rates import RateLimit
+from cellctl.hmi.visitors.sessions import Sessions
 from tests.unit.hmi.scripted_daemon import page_process
 
 

@@ -5,7 +5,6 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from cellctl.records.database.canonical import columns
 from cellctl.records.database.schema import RunRow
 from cellctl.records.database.schema_1.tables import (
     PROCESS,
@@ -15,6 +14,7 @@ from cellctl.records.database.schema_1.tables import (
     RunOfSchema1,
     has_tables,
 )
+from cellctl.records.database.sealing.canonical import columns
 
 _DETAILS = (MeasurementOfSchema1, IterationOfSchema1, ArtefactOfSchema1)
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from cellctl.hmi.people import matches
 from cellctl.hmi.settings import load_settings
+from cellctl.hmi.visitors.people import matches
 from fakes.demo.page import PEOPLE, DemoPage, write_settings
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from cellctl.api.local_socket.messages import OnBehalf, Role
 from cellctl.api.local_socket.page_desk import refusal
-from cellctl.hmi.access import Visitor
 from cellctl.hmi.answers.permissions import REQUESTS, permissions, session_told
+from cellctl.hmi.visitors.access import Visitor
 from cellctl.packml.reject import RejectCode
 from cellctl.translations import LANGUAGES
 

@@ -8,8 +8,8 @@ import pytest
 from cellctl.api.local_socket.messages import Role
 from cellctl.api.local_socket.page_desk import ENDS_MOTION, not_theirs
 from cellctl.command.permitted import permitted
-from cellctl.hmi.access import Visitor
 from cellctl.hmi.answers.permissions import permissions, session_told
+from cellctl.hmi.visitors.access import Visitor
 from cellctl.hmi.words.page_words import page_words
 from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode

@@ -21,8 +21,8 @@ from cellctl.api.local_socket.messages import (
 )
 from cellctl.api.local_socket.page_desk import PageDesk
 from cellctl.api.local_socket.users import Users
-from cellctl.hmi.access import Visitor
 from cellctl.hmi.answers.permissions import session_told
+from cellctl.hmi.visitors.access import Visitor
 from cellctl.packml.reject import RejectCode
 from tests.unit.hmi.page.screen import Screen, Tabs
 from tests.unit.hmi.scripted_daemon import PaperDaemon, page_process, page_thread, serving, snapshot

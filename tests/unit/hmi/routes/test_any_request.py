@@ -16,8 +16,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellctl.hmi.problems import MEDIA_TYPE
-from cellctl.hmi.rates import RateLimit
 from cellctl.hmi.routes.exports import RunExporter
+from cellctl.hmi.visitors.rates import RateLimit
 from tests.unit.hmi.http_client import Reply
 from tests.unit.hmi.in_process import Api, settings_for
 from tests.unit.hmi.routes.conftest import NEW

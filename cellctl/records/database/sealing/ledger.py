@@ -24,10 +24,10 @@ from typing import Any
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
-from cellctl.records.database.canonical import digest
 from cellctl.records.database.schema import Base, LedgerHeadRow, LedgerRow
-from cellctl.records.database.sealed import KINDS, PROGRESS, RUN
-from cellctl.records.database.written_details import WrittenDetails
+from cellctl.records.database.sealing.canonical import digest
+from cellctl.records.database.sealing.sealed import KINDS, PROGRESS, RUN
+from cellctl.records.database.sealing.written_details import WrittenDetails
 from cellctl.records.seals import LedgerHead
 
 GENESIS = "0" * 64

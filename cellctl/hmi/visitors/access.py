@@ -8,11 +8,11 @@ from fastapi import Depends, Request, Security
 
 from cellctl.api.local_socket.messages import Role
 from cellctl.hmi.answers.document import BEARER, COOKIE, SESSION
-from cellctl.hmi.hosts import host_name
-from cellctl.hmi.people import People
 from cellctl.hmi.problems import Problem
-from cellctl.hmi.sessions import Session, Sessions
 from cellctl.hmi.settings import LOOPBACK, PageSettings
+from cellctl.hmi.visitors.hosts import host_name
+from cellctl.hmi.visitors.people import People
+from cellctl.hmi.visitors.sessions import Session, Sessions
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from sqlalchemy.orm import Session
 
 from cellctl.clock import utc_now
-from cellctl.records.database import ledger
 from cellctl.records.database.schema import Base, RunRow
-from cellctl.records.database.sealed import OPENING, PROGRESS
-from cellctl.records.database.written_details import WrittenDetails
+from cellctl.records.database.sealing import ledger
+from cellctl.records.database.sealing.sealed import OPENING, PROGRESS
+from cellctl.records.database.sealing.written_details import WrittenDetails
 
 
 def altered(session: Session, row: RunRow, written: WrittenDetails) -> bool:

@@ -13,7 +13,6 @@ from typing import Any, Self
 from sqlalchemy import Row, select
 from sqlalchemy.orm import Session
 
-from cellctl.records.database.canonical import digest
 from cellctl.records.database.schema import (
     ArtefactRow,
     Base,
@@ -23,6 +22,7 @@ from cellctl.records.database.schema import (
     PhaseRow,
     PoseRow,
 )
+from cellctl.records.database.sealing.canonical import digest
 
 DETAILS = (PhaseRow, FigureRow, PoseRow, PassRow, DocumentRow, ArtefactRow)
 """Tables of the details of a run; a table stands after those that it refers to."""

@@ -14,8 +14,8 @@ from sqlalchemy.orm import Session
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.errors.records import StoreContradictsVersion
 from cellctl.records import RunResult, RunStore
-from cellctl.records.database import ledger
 from cellctl.records.database.schema import Base
+from cellctl.records.database.sealing import ledger
 from cellctl.records.figures import Limit, figure
 from cellctl.records.seals import LedgerHead
 from tests.unit.records import sample

@@ -1,7 +1,7 @@
 """For how long somebody who has signed in may operate."""
 
-from cellctl.hmi.access import Visitor
-from cellctl.hmi.sessions import LIFE_S, Sessions
+from cellctl.hmi.visitors.access import Visitor
+from cellctl.hmi.visitors.sessions import LIFE_S, Sessions
 
 
 def test_whoever_does_nothing_for_long_only_looks_on_until_the_session_ends() -> None:

@@ -8,7 +8,6 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from cellctl.records.database import schema_1
-from cellctl.records.database.canonical import columns
 from cellctl.records.database.schema import (
     AlarmRow,
     AuditRow,
@@ -18,7 +17,8 @@ from cellctl.records.database.schema import (
     RunRow,
     ValueRow,
 )
-from cellctl.records.database.written_details import DETAILS, WrittenDetails
+from cellctl.records.database.sealing.canonical import columns
+from cellctl.records.database.sealing.written_details import DETAILS, WrittenDetails
 
 RUN, GAUGE, PROGRESS = "run", "gauge", "progress"
 OPENING, AUDIT, VALUE = "opening", "audit", "value"
