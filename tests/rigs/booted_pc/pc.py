@@ -15,6 +15,7 @@ ROOT = Path(__file__).parents[3]
 _GROUPS = Path("/sys/fs/cgroup/unified"), Path("/sys/fs/cgroup")
 _SYSTEMD = Path("/lib/systemd/systemd")
 _NAMESPACES = ("--pid", "--mount", "--cgroup", "--uts", "--ipc", "--net")
+_PATH = "/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin"
 BOOT_S = 60.0
 RELEASE = Path("opt/cellctl/current")
 
@@ -67,11 +68,13 @@ class BootedPc:
             folder = release / f"usr/lib/{kind}.d"
             folder.mkdir(parents=True)
             shutil.copy(ROOT / f"systemd/cellctl.{kind}", folder / "cellctl.conf")
-        cls._install_program(release / RELEASE / ".venv")
+        on_path = release / "usr/local/bin"
+        on_path.mkdir(parents=True)
+        cls._install_program(release / RELEASE / ".venv", on_path)
         return cls(box, release)
 
     @staticmethod
-    def _install_program(environment: Path) -> None:
+    def _install_program(environment: Path, on_path: Path) -> None:
         version = f"python{sys.version_info.major}.{sys.version_info.minor}"
         (environment / "bin").mkdir(parents=True)
         (environment / "bin/python").symlink_to(f"/opt/cellctl/python/bin/{version}")
@@ -93,6 +96,7 @@ class BootedPc:
             program = environment / "bin" / name
             program.write_text("\n".join(lines) + "\n", "utf-8")
             program.chmod(0o755)
+            (on_path / name).symlink_to(f"/{RELEASE}/.venv/bin/{name}")
 
     def __enter__(self) -> Self:
         group_of_all = _group_of_all()
@@ -154,7 +158,7 @@ class BootedPc:
         root = f"/proc/{first}/root"
         return [
             "nsenter", "-t", str(first), "-m", "-p", "-u", "-i", "-C", "-n", f"--root={root}",
-            f"--wd={root}", "env", "-i", "PATH=/usr/sbin:/usr/bin:/sbin:/bin", "TERM=dumb",
+            f"--wd={root}", "env", "-i", f"PATH={_PATH}", "TERM=dumb",
         ]  # fmt: skip
 
     def _wait_for_boot(self) -> None:
