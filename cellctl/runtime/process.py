@@ -98,7 +98,8 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     async def prepare(self, recipe: Recipe) -> Prepared[P]:
         """Starting, before anything moves: read and check everything that a run needs.
 
-        Raises the fault that keeps the run from beginning.
+        Asked again after a Hold, whose run goes on with what was read first, and only with the same
+        calibrations. Raises the fault that keeps the run from beginning.
         """
 
     @abstractmethod

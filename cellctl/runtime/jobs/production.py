@@ -5,6 +5,7 @@ from typing import Any
 from cellctl import log
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
+from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.records import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import DRY_RUN, PRODUCTION, RunResult
@@ -14,7 +15,7 @@ from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.jobs.earlier_part import Warn, warn_of_earlier_part
 from cellctl.runtime.jobs.job import Job
 from cellctl.runtime.jobs.record import JobRecord
-from cellctl.runtime.process import Process, RunContext
+from cellctl.runtime.process import Prepared, Process, RunContext
 from cellctl.runtime.steps import HeldMeanwhile, SafePoint, StepRunner
 
 _log = log.get(__name__)
@@ -46,6 +47,8 @@ class ProductionJob(Job):
         self._record = JobRecord(process.services.cell, process.services.store, command)
         self._begun: tuple[Any, Any] | None = None
         """The run of the process, and what its first step takes."""
+        self._stored: dict[str, str] = {}
+        """Ids of the calibrations that count in the run, by their names."""
 
     @property
     def run_number(self) -> int:
@@ -73,6 +76,7 @@ class ProductionJob(Job):
         # Before the record is opened: a run that lacks a calibration or a drawing has not begun and
         # leaves no record.
         prepared = await self._process.prepare(self._recipe)
+        self._stored = _ids(prepared)
         mode = DRY_RUN if self._command.dry_run else PRODUCTION
         # Before ``begin``, the first call that moves a robot: no motion without a record.
         run = await self._record.open(self._recipe, mode, prepared.stored)
@@ -102,10 +106,23 @@ class ProductionJob(Job):
                 await runner.run(steps, state)
             except HeldMeanwhile:
                 _log.info("held meanwhile: everything is measured again")
+                await self._require_as_prepared()
                 state = await self._process.begin(run)
             else:
                 await self._require_figures_within()
                 return
+
+    async def _require_as_prepared(self) -> None:
+        """Look again, before anything moves, at what the run was prepared with.
+
+        A Hold lasts as long as somebody wants, and the cell is open meanwhile: a head may have been
+        exchanged, a calibration may have ended, and the speed may be overridden at the pendant.
+        What was read at the beginning goes on to count, as the record has it. Raises what the
+        process raises, and ``CalibrationRecordInvalid``.
+        """
+        found = _ids(await self._process.prepare(self._recipe))
+        if others := sorted(dict(self._stored.items() ^ found.items())):
+            raise CalibrationRecordInvalid(f"exchanged during a Hold: {', '.join(others)}")
 
     async def _require_figures_within(self) -> None:
         """Raise ``FigureBeyondLimit``: a run is good with all of its figures or not at all."""
@@ -124,3 +141,7 @@ class ProductionJob(Job):
             outcome = RunResult.BAD
         await self._record.close(outcome, fault)
         return outcome
+
+
+def _ids(prepared: Prepared[Any]) -> dict[str, str]:
+    return {one.kind: one.id for one in prepared.stored}
