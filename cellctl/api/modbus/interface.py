@@ -176,7 +176,7 @@ class PlcInterface:
             raise LineTaskDied(f"{type(error).__name__}: {error}") from error
 
     def _committed(self, client: str) -> None:
-        committed = self._latch.commit(self._registers.holding, client)
+        committed = self._latch.commit(self._registers.written_by(client), client)
         if committed is not None:
             seq, command = committed
             # Modbus knows no persons: the line is known by the address that it writes from.

@@ -1,9 +1,9 @@
 """The handshake with the line PLC: when its registers are a command, and what becomes of it.
 
 Registers 0 to 26 and 28 to 39 are read as a command at the moment when ``cmd_seq`` is another than
-the one that the same client wrote before. Each client has numbers of its own: a PLC that writes its
-whole image again and again says nothing new with it, also when another client has given a command
-in between.
+the one that the same client wrote before. Each client has numbers and words of its own: a PLC that
+writes its whole image again and again says nothing new with it, also when another client has given
+a command in between.
 
 The first number of a client after a start of the cell is suspect, because it may have been in the
 PLC for days. Accepted are 1, with which a PLC says that it begins anew, and the number after

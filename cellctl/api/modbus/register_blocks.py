@@ -24,6 +24,8 @@ class RegisterFile:
     ) -> None:
         """Both are called with the address of the client that has written."""
         self._holding = [0] * HOLDING_SIZE
+        self._written: dict[str, list[int]] = {}
+        """What each client has written last into each holding register, by its address."""
         self._input: tuple[int, ...] = (0,) * INPUT_SIZE
         self._on_commit = on_commit
         self._on_heartbeat = on_heartbeat
@@ -32,6 +34,15 @@ class RegisterFile:
     def holding(self) -> tuple[int, ...]:
         """A copy of the holding block."""
         return tuple(self._holding)
+
+    def written_by(self, client: str) -> tuple[int, ...]:
+        """What this client has written last into each holding register; 0 where it never has.
+
+        A command is not put together from words of two clients: one that writes its whole image
+        again and again would turn the Stop of another, whose number follows in a request of its
+        own, into its own last command.
+        """
+        return tuple(self._written.get(client, [0] * HOLDING_SIZE))
 
     def publish(self, block: tuple[int, ...]) -> None:
         """Replace all input registers at once."""
@@ -64,6 +75,8 @@ class RegisterFile:
             if owner is None or owner[0] not in written or owner[-1] not in written:
                 raise AddressRefused
         self._holding[address : address + len(values)] = values
+        own = self._written.setdefault(client, [0] * HOLDING_SIZE)
+        own[address : address + len(values)] = values
         # The heartbeat first: a command in the same request must not be refused for its absence.
         if _HEARTBEAT in written:
             self._on_heartbeat(client, self._holding[_HEARTBEAT])

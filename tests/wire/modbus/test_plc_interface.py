@@ -239,6 +239,21 @@ async def test_a_stop_of_another_client_does_not_take_over(line: Line) -> None:
             await asyncio.sleep(0.05)
 
 
+async def test_a_command_has_no_words_of_another_client(line: Line) -> None:
+    """The PLC writes its whole image again between a Stop and the number that follows it."""
+    port, plc = await line.open()
+    page = await line.connect(port, "127.0.0.2")
+    await line.command(plc, 1, Command.START, serial="SAT-1")
+    await until_answer(partial(inputs, plc), lambda b: b[ACK] == 1)
+    await line.heartbeat(page)
+    await page.write_registers(0, [0, Command.STOP])
+    await line.command(plc, 1, Command.START, serial="SAT-1")
+    await page.write_registers(26, [0, 2])
+    await until_answer(partial(inputs, page), lambda b: b[ACK] == 2)
+    given = [(one.command.cntrl_cmd, one.command.serial) for one in line.commands]
+    assert given == [(Command.START, "SAT-1"), (Command.STOP, "")]
+
+
 async def test_a_refused_command_does_not_take_over(line: Line) -> None:
     port, plc = await line.open(timeout_s=0.5)
     page = await line.connect(port, "127.0.0.2")
