@@ -7,6 +7,7 @@ measured; see ``contact_world`` for what is simpler than on the wire.
 import asyncio
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any, Self, cast
 
@@ -166,16 +167,15 @@ class _Cycle:
         plan, outcome = self._cell.plan, self._outcome
         frames = believed_frames(self._cell.recipe, self._above)
         motions = self._motions(frames)
-        await self._begin(CyclePhase.FACE, "")
+        await self._begin(motions, CyclePhase.FACE)
         face = await touch_face(motions, plan.task, plan.face)
         await motions.back_out(CLEAR_M - face.depth_m + plan.face.radius_m * face.tilt_rad)
         outcome.part = judged_part(self._cell.recipe, plan, face.yields_m)
         self.ticks = TickLog()
         motions = self._motions(on_face(frames, face))
         try:
-            result = await search_and_insert(
-                motions, plan, face.yields_m, CycleLog.of(plan), self._begin
-            )
+            begin = partial(self._begin, motions)
+            result = await search_and_insert(motions, plan, face.yields_m, CycleLog.of(plan), begin)
             outcome.seated = self._world.seated
             if result.judgement.fault is not None:
                 raise result.judgement.fault
@@ -187,7 +187,7 @@ class _Cycle:
         finally:
             outcome.curve = self.ticks.text()
 
-    async def _begin(self, phase: CyclePhase, _words: str) -> None:
+    async def _begin(self, motions: StreamedContact, phase: CyclePhase, _words: str = "") -> None:
         world, outcome, task = self._world, self._outcome, self._cell.plan.task
         if phase is CyclePhase.SEARCH and phase not in outcome.peaks:
             outcome.search_s = -world.now_s
@@ -198,6 +198,7 @@ class _Cycle:
             outcome.search_s += world.now_s
         tolerance = WrenchTolerance(guard_force(task, phase).value, task.limits.fault_n_m)
         await world.guard.arm(guard_limits(tolerance.limits, SENSING))
+        motions.watched_n = tolerance.force_n
         world.peaks = outcome.peaks.setdefault(phase, ForcePeaks())
 
     def _motions(self, frames: ContactFrames) -> StreamedContact:

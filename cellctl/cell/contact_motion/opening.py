@@ -77,6 +77,10 @@ async def open_contact_loop(
 async def watch_closer(
     contact: StreamedContact, arm: GuardedRobot, tolerance: WrenchTolerance
 ) -> None:
-    """Have the guard watch these limits from now on, while the arm stands in its stream."""
+    """Have the guard watch these limits from now on, while the arm stands in its stream.
+
+    Motions in the free keep below them, too.
+    """
     limits = guard_limits(tolerance.limits, Sensing.of(arm.sensor))
     await contact.hold_while(arm.guard.arm(limits))
+    contact.watched_n = tolerance.force_n

@@ -7,6 +7,7 @@ import numpy as np
 
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
 from cellctl.cell.contact_motion.ends import End, SomethingMet, arrived, first_of, when
+from cellctl.cell.contact_motion.free_way import free_speed_m_s
 from cellctl.cell.contact_motion.giving_way import (
     TILT_X,
     TILT_Y,
@@ -32,7 +33,7 @@ from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
 from cellctl.cell.contact_motion.ticks import MotionKind
 from cellctl.errors.streamed_contact import StreamLate
 from cellctl.force.contact.streamed.path import PathFollower, straight
-from cellctl.force.contact.streamed.speeds import met_speed_m_s, touch_speed_m_s
+from cellctl.force.contact.streamed.speeds import touch_speed_m_s
 from cellctl.geometry.pose import MM, Array
 
 _TURN_LEVER_M = 0.02
@@ -40,9 +41,6 @@ _TURN_LEVER_M = 0.02
 which may meet the part with the hole. What carries it swings through space that is kept free."""
 _SHORTEST_M = 1e-6
 """A way shorter than this counts as this long, so that a speed along it can be stated at all."""
-_MET_RATIO = 0.8
-"""Share of the force limit that a contact which nobody expected may take; the rest is for the error
-of the stiffness and the noise."""
 _LATEST_RATIO, _LATEST_S = 3.0, 10.0
 """A motion is given up after three times the time of its way at full speed, and 10 s. It ends only
 what hangs: a late tick halves the speed, and a way of nothing still needs time to come to rest."""
@@ -63,6 +61,8 @@ class StreamedContact(ContactMotions):
 
     def __init__(self, loop: ContactLoop) -> None:
         self._loop, self._settings = loop, loop.settings
+        self.watched_n = loop.settings.limit_n
+        """Force at which the guard stops the arm; less where it watches closer for a phase."""
         self._pressed_n = 0.0
         """Force with which the last motion pressed; a push sideways goes on to press with it."""
 
@@ -80,9 +80,10 @@ class StreamedContact(ContactMotions):
         shift_s = float(np.linalg.norm(way[:3])) / fastest_m_s(self._loop)
         turn_s = float(np.linalg.norm(way[3:])) / fastest_rad_s(self._loop)
         least_s = max(shift_s + turn_s, self._loop.period_s)
-        # What stands in the way after all must not be met with more than the guard allows.
-        met_m_s = met_speed_m_s(self._settings.figures, _MET_RATIO * self._settings.limit_n)
-        speed = min(speed_m_s, met_m_s, max(path.remaining, _SHORTEST_M) / least_s)
+        way_m = max(path.remaining, _SHORTEST_M)
+        from_m, to_m = float(self._loop.tip_command[2]), float(target[2])
+        free_m_s = free_speed_m_s(self._settings, self.watched_n, from_m, to_m, way_m)
+        speed = min(speed_m_s, free_m_s, way_m / least_s)
         moved = await self._run(
             MotionKind.MOVE_FREE,
             path,

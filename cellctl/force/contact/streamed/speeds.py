@@ -3,6 +3,8 @@
 Source: sections 1, 3.2 and 4.4 of the study of insertion by touch.
 """
 
+from math import sqrt
+
 import numpy as np
 
 from cellctl.force.contact.streamed.gains import LoopFigures
@@ -23,16 +25,20 @@ LOST_S = 0.02
 def touch_speed_m_s(figures: LoopFigures, growth_n: float) -> float:
     """Speed (m/s) of a touch whose contact grows by no more than ``growth_n`` until it is noticed
     and answered."""
-    return min(FASTEST_TOUCH_M_S, met_speed_m_s(figures, growth_n))
-
-
-def met_speed_m_s(figures: LoopFigures, growth_n: float) -> float:
-    """The same for a motion in the free, should it meet something: v = ΔF / (k (θ + t_det)).
-
-    The bound of touches does not apply to it.
-    """
     delay_s = figures.dead_time_s + DETECTION_S
-    return growth_n / (figures.stiffness_n_m * delay_s)
+    return min(FASTEST_TOUCH_M_S, growth_n / (figures.stiffness_n_m * delay_s))
+
+
+def met_speed_m_s(figures: LoopFigures, growth_n: float, acceleration_m_s2: float) -> float:
+    """Speed (m/s) of a motion in the free that ends at its first contact: by so much the force
+    grows until the arm stands.
+
+    It goes on for the dead time, and then brakes with its acceleration: ΔF = k (v θ + v² / 2a). It
+    may be faster than a touch, as no time is needed to believe the contact.
+    """
+    dead_s, a = figures.dead_time_s, acceleration_m_s2
+    way_m = growth_n / figures.stiffness_n_m
+    return a * (sqrt(dead_s**2 + 2.0 * way_m / a) - dead_s)
 
 
 def feed_override(axial_n: float, limit_n: float) -> float:

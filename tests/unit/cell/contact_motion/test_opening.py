@@ -50,7 +50,9 @@ async def opened(robot: InProcessRobot, guard: TinyGuard, stiffness_n_m: float =
         cell, arm, FRAMES, settings(stiffness_n_m), OFFER.limits
     ) as contact:
         assert guard.armed
+        assert contact.watched_n == 50.0
         await watch_closer(contact, arm, WrenchTolerance(10.0, 1.0))
+        assert contact.watched_n == 10.0
         touched = await contact.touch(np.array([0.0, 0.0, -1.0]), 1e-5, 8.0)
     return touched.ended
 

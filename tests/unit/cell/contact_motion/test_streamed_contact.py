@@ -259,6 +259,44 @@ def test_a_trip_of_the_guard_is_the_fault_of_the_motion() -> None:
         run(contact(world).touch(DOWN, 3e-3, 60.0, 1e-3))
 
 
+@pytest.mark.parametrize(("stiffness_n_m", "watched_n"), [(1e5, 20.0), (1e6, 50.0), (1e6, 20.0)])
+def test_what_stands_in_a_free_way_is_met_with_less_than_the_guard_allows(
+    stiffness_n_m: float, watched_n: float
+) -> None:
+    above_m = np.array([0.0, 0.0, -2e-3, 0.0, 0.0, 0.0])
+    world = ElasticWorld(wall(stiffness_n_m), sigma_n=0.1, tip=above_m)
+    motions = contact(world, LoopFigures(stiffness_n_m, world.dead_time_s))
+    motions.watched_n = watched_n
+
+    async def go_and_stand() -> ContactMotion:
+        moved = await motions.move_free(np.array([0.0, 0.0, 2e-3]), UPRIGHT, 20e-3)
+        await motions.touch(DOWN, 0.0, 100.0)
+        return moved
+
+    moved = run(go_and_stand())
+    assert moved.ended is Ended.FORCE
+    greatest_n = -min(force[2] for force in world.forces)
+    # Above what counts as a contact, since only then the arm knows of it.
+    assert 8.0 < greatest_n < watched_n
+
+
+@pytest.mark.parametrize(("depth_mm", "sinks_mm"), [(-1.0, 0.0), (-1.0, 0.5), (0.5, 0.0)])
+def test_a_way_over_the_face_is_slow_as_far_as_it_sinks_and_one_beside_it_all_along(
+    depth_mm: float, sinks_mm: float
+) -> None:
+    def took_s(watched_n: float) -> float:
+        tip = np.array([0.0, 0.0, depth_mm * 1e-3, 0.0, 0.0, 0.0])
+        world = ElasticWorld(lambda _tip: np.zeros(6), tip=tip)
+        motions = contact(world, LoopFigures(1e6, world.dead_time_s))
+        motions.watched_n = watched_n
+        begun_s = world.now_s
+        run(motions.move_free(np.array([1e-3, 0.0, 1e-3 * (depth_mm + sinks_mm)]), UPRIGHT, 1.0))
+        return world.now_s - begun_s
+
+    # The limit of the settings is 50 N.
+    assert (took_s(20.0) > 1.2 * took_s(50.0)) is (depth_mm > 0 or sinks_mm > 0)
+
+
 def test_a_push_sideways_goes_on_to_press() -> None:
     hole = Hole(1e6, clearance_m=0.1e-3, depth_m=2e-3)
     world = ElasticWorld(hole, sigma_n=0.1, tip=np.array([0, 0, 1.95e-3, 0, 0, 0.0]))
