@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cellctl.cell.contact_motion.ends import least_change_n
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.processes.peg_in_hole.first_contact.classify import (
     ContactClass,
@@ -79,6 +80,25 @@ class LostSupport:
         if self.begin is None:
             self.begin = sample
         return sample.time_s - self.begin.time_s >= DETECTION_S
+
+
+class Bottomed:
+    """Holds once the face falls away before a slide no longer as steeply as before.
+
+    It carries the peg with less than the press as long as the arm follows it downwards, and with
+    more as soon as it rises: on a flank that is as steep as the one before with so much more that
+    the end must not wait for that.
+    """
+
+    def __init__(self) -> None:
+        self._least_n = np.inf
+
+    def __call__(self, sample: ContactSample) -> bool:
+        """The condition of a slide."""
+        carried_n = abs(float(sample.force_n[2]))
+        # A slide may begin with the force of a climb that has just ended.
+        self._least_n = min(self._least_n, carried_n)
+        return carried_n > self._least_n + least_change_n(sample.force_sigma_n)
 
 
 def against_a_wall(press_n: float, cell: CellFigures) -> Stop:

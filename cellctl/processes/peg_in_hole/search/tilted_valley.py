@@ -9,11 +9,11 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
+from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended, never
 from cellctl.force.contact.spirals import spiral_points
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S
-from cellctl.processes.peg_in_hole.search.conditions import Stop
+from cellctl.processes.peg_in_hole.search.conditions import Bottomed, Stop
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 from cellctl.processes.peg_in_hole.search.tilted_touch import leaning
@@ -130,7 +130,8 @@ class _Valley:
             self._probe.trace.note(motion.last, Felt.EDGE)
             sides_m.append(self._here_m)
             if sign > 0:
-                await self._step_to(at_m)
+                # From the bottom of the valley on the way to the other side goes on at once.
+                await self._downhill_to(at_m, _DOWNHILL_SPEEDS)
         return np.asarray((sides_m[0] + sides_m[1]) / 2)
 
     async def _wall(self, at_m: Array) -> Array | None:
@@ -173,9 +174,14 @@ class _Valley:
         return side_n < least_n or self.fell_in(self.dip_m(sample))
 
     async def _step_to(self, point_m: Array, speeds: float = _DOWNHILL_SPEEDS) -> Array:
-        """Downhill, hence faster."""
-        await self._slide(point_m, speeds * self._speed, lambda _sample: False)
+        """Faster as long as it goes downhill."""
+        if await self._downhill_to(point_m, speeds) is Ended.CONDITION:
+            await self._slide(point_m, _ACROSS_SPEEDS * self._speed, never)
         return point_m
+
+    async def _downhill_to(self, point_m: Array, speeds: float) -> Ended:
+        """Ends by ``CONDITION`` where the face no longer falls away before the peg."""
+        return (await self._slide(point_m, speeds * self._speed, Bottomed())).ended
 
     async def _slide(self, point_m: Array, speed_m_s: float, until: Stop) -> ContactMotion:
         motion = await self._probe.slide(point_m[None, :], speed_m_s, until, share=_FORCE_SHARE)
