@@ -108,25 +108,27 @@ async def search_and_insert(
     order = ", then ".join(name.value for name in plan.choice.order)
     await begin(CyclePhase.SEARCH, "touch the face over its middle")
     await motions.move_free(np.array([0.0, 0.0, -CLEAR_M]), np.zeros(3), _FREE_M_S)
-    await motions.touch(_DOWN, 2 * CLEAR_M, TOUCH_SHARE * task.limits.search_n)
+    parameters = plan.choice.parameters
+    await motions.touch(
+        _DOWN, 2 * CLEAR_M, TOUCH_SHARE * task.limits.search_n, parameters.touch_speed.value
+    )
     # For its time stamp: the deadline of the search counts on the clock of the samples.
-    press_n = plan.choice.parameters.press_n.value
+    press_n = parameters.press_n.value
     walled = against_a_wall(press_n, task.cell)
     begun = (await motions.press(press_n, _PRESS_S, walled)).last
     probe = TouchProbe(
         motions,
         task,
-        plan.choice.parameters,
+        parameters,
         log.hole_map,
         begun.time_s + task.search_limit_s,
         trace=log.trace,
     )
-    await meet_face(motions, task, plan.choice.parameters, log.contacts)
-    await begin(
-        CyclePhase.SEARCH, f"search: {order}; first contact: {log.contacts[-1].found.value}"
-    )
-    found_by = log.found_by = await find_hole(probe, plan.choice.order)
-    await require_walls(motions, task, plan.choice.parameters, log.contacts)
+    await meet_face(motions, task, parameters, log.contacts)
+    first_contact = log.contacts[-1].found
+    await begin(CyclePhase.SEARCH, f"search: {order}; first contact: {first_contact.value}")
+    found_by = log.found_by = await find_hole(probe, plan.choice.order, first_contact)
+    await require_walls(motions, task, parameters, log.contacts)
     felt = log.contacts[-1].found.value
     words = f"insert: the hole was found by {found_by.value}, {felt}"
     fed, evidence, judgement = await feed_and_judge(motions, plan, face_yields_m, begin, words)

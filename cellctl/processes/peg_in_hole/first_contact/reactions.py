@@ -16,7 +16,6 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
 _TRIES = 3
-_LIFT_M = 1e-3
 
 Contacts = list[ClassifiedContact]
 """Contacts in their order in time; a cycle keeps them for its record."""
@@ -27,8 +26,8 @@ async def meet_face(
 ) -> None:
     """The first contact: an edge or a wall is given way to, a peg held by friction pressed less.
 
-    What is still neither face nor hole after three times is left by a lift: the search touches down
-    anew, over its own centre. Raises ``WrongFeature``.
+    What is still neither face nor hole after three times is left to the search. Raises
+    ``WrongFeature``.
     """
     press_n = LIGHT_N
     for _ in range(_TRIES):
@@ -40,9 +39,10 @@ async def meet_face(
         if contact.found is ContactClass.STUCK:
             press_n /= 2
         else:
-            lost = LostSupport(press_n)
-            await motions.comply(press_n, parameters.give_way_time.value, lost, turns=False)
-    await motions.back_out(_LIFT_M)
+            # With the press of the search, for which the time is: a lighter one would move a stiff
+            # arm by a fraction of the way only.
+            slides_n, give_way_s = parameters.press_n.value, parameters.give_way_time.value
+            await motions.comply(slides_n, give_way_s, LostSupport(slides_n), turns=False)
 
 
 async def require_walls(

@@ -76,7 +76,7 @@ def choose_search(task: SearchTask, wanted: SearchName | None = None) -> SearchC
     parameters = search_parameters(task)
     estimates = estimate_searches(task, parameters)
     # A recipe that names a search is taken at its word: nothing follows when it finds nothing.
-    asked = _default_order(task) if wanted is None else (wanted,)
+    asked = _default_order(task, estimates) if wanted is None else (wanted,)
     if not is_wide(task) and task.cell.loop_n_s_m > _GREATEST_LOOP_N_S_M:
         raise SearchImpossible(
             f"k θ is {task.cell.loop_n_s_m:.3g} N·s/m, for a tight hole at most "
@@ -99,13 +99,20 @@ def choose_search(task: SearchTask, wanted: SearchName | None = None) -> SearchC
     return SearchChoice(order, estimates, parameters)
 
 
-def _default_order(task: SearchTask) -> tuple[SearchName, ...]:
+def _default_order(
+    task: SearchTask, estimates: Mapping[SearchName, Derived]
+) -> tuple[SearchName, ...]:
     on_plug = task.fit.rim_m is not None
     if is_wide(task):
         return (SearchName.SPIRAL, SearchName.ARC if on_plug else SearchName.TILTED_VALLEY)
     if on_plug:
         return (SearchName.ARC, SearchName.PATENT_CIRCUMCENTRE)
-    return (SearchName.TILTED_VALLEY, SearchName.PARTICLE_MAP)
+    # The slides of a valley are as long as the radius of the peg, at the speed of a touch; a spiral
+    # is fast where the place is known well. It looks everywhere then, and the touches of a map are
+    # no more precise than the attitude of a thick peg.
+    in_time = estimates[SearchName.TILTED_VALLEY].value <= task.search_limit_s
+    first = SearchName.TILTED_VALLEY if in_time else SearchName.SPIRAL
+    return (first, SearchName.PARTICLE_MAP)
 
 
 def _noise_of_tilted(task: SearchTask, parameters: SearchParameters) -> str | None:

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from cellctl.processes.peg_in_hole.faults import HoleAbsent
+from cellctl.processes.peg_in_hole.first_contact.classify import ContactClass
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.search.arc import ArcSearch
 from cellctl.processes.peg_in_hole.search.particle_map import ParticleMap
@@ -25,13 +26,22 @@ STRATEGIES: Mapping[SearchName, SearchStrategy] = {
 }
 
 
-async def find_hole(probe: TouchProbe, order: tuple[SearchName, ...]) -> SearchName:
+async def find_hole(
+    probe: TouchProbe,
+    order: tuple[SearchName, ...],
+    first_contact: ContactClass = ContactClass.END_FACE,
+) -> SearchName:
     """The strategy by which the peg has entered.
+
+    A peg whose first contact is no face may stand in the mouth of its hole: it is pressed there, as
+    the begin of the first strategy, which would lift it and touch down over the search centre.
 
     A map that is not exhausted then is the prior of one retry: the peg is lifted and looks round
     the place that is likeliest now, within the time of the search. Raises ``HoleAbsent`` when
     nothing is left, ``SearchGaveUp`` at the deadline before that.
     """
+    if first_contact is not ContactClass.END_FACE and await probe.enters():
+        return order[0]
     for name in order:
         if await STRATEGIES[name].find(probe):
             return name

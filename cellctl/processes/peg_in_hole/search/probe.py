@@ -128,7 +128,12 @@ class TouchProbe:
         # nothing left to wait for.
         deeper_m = 1.2 * self.parameters.tilted_dip.value if np.any(rotation) else _LIFT_M
         down = np.array([0.0, 0.0, 1.0])
-        touched = await self.motions.touch(down, _LIFT_M + deeper_m, TOUCH_SHARE * self.press_n)
+        touched = await self.motions.touch(
+            down,
+            _LIFT_M + deeper_m,
+            TOUCH_SHARE * self.press_n,
+            self.parameters.touch_speed.value,
+        )
         self.still_in_time(touched.last)
         return touched.last
 

@@ -34,14 +34,16 @@ def beyond(tip: Array) -> Array:
     return wall(STIFFNESS_N_M)(tip - [0, 0, 2e-3, 0, 0, 0])
 
 
-async def _classified(part: Part, at_m: tuple[float, float, float], *, entered: bool) -> Contacts:
+async def _classified(
+    part: Part, at_m: tuple[float, float, float], *, entered: bool, stiffness_n_m: float
+) -> Contacts:
     tip = np.array([*at_m, 0.0, 0.0, 0.0])
     world = ElasticWorld(part, sigma_n=0.1, tip=tip)
     task = pin(
-        1e3 * CLEARANCE_M, chamfer_mm=0.5, stiffness_n_m=STIFFNESS_N_M,
+        1e3 * CLEARANCE_M, chamfer_mm=0.5, stiffness_n_m=stiffness_n_m,
         dead_time_s=world.dead_time_s,
     )  # fmt: skip
-    motions = contact(world, LoopFigures(STIFFNESS_N_M, world.dead_time_s))
+    motions = contact(world, LoopFigures(stiffness_n_m, world.dead_time_s))
     contacts: Contacts = []
     look = require_walls if entered else meet_face
     await look(motions, task, search_parameters(task), contacts)
@@ -49,9 +51,14 @@ async def _classified(part: Part, at_m: tuple[float, float, float], *, entered: 
 
 
 def classified(
-    part: Part, at_m: tuple[float, float, float], *, entered: bool = False
+    part: Part,
+    at_m: tuple[float, float, float],
+    *,
+    entered: bool = False,
+    stiffness_n_m: float = STIFFNESS_N_M,
 ) -> list[ContactClass]:
-    contacts = asyncio.run(_classified(part, at_m, entered=entered))
+    looked = _classified(part, at_m, entered=entered, stiffness_n_m=stiffness_n_m)
+    contacts = asyncio.run(looked)
     return [contact.found for contact in contacts]
 
 
@@ -70,6 +77,16 @@ def test_a_peg_on_a_chamfer_is_let_go_and_has_walls_all_round_then() -> None:
 def test_behind_the_entry_of_its_hole_a_peg_has_walls_all_round() -> None:
     hole = Hole(STIFFNESS_N_M, clearance_m=CLEARANCE_M)
     assert classified(hole, (0.0, 0.0, 1.5e-3), entered=True) == [ContactClass.ALIGNED]
+
+
+def test_a_stiff_arm_gives_way_along_all_of_a_chamfer_within_one_try() -> None:
+    stiff = Hole(1e6, clearance_m=CLEARANCE_M, chamfer_m=1e-3, depth_m=2e-3)
+    looked = _classified(stiff, (0.8e-3, 0.0, 0.3e-3), entered=False, stiffness_n_m=1e6)
+    on_flank, let_go, *_ = asyncio.run(looked)
+    assert on_flank.found in (ContactClass.EDGE, ContactClass.SIDE)
+    # Within its clearance of the axis of the hole, but for the noise.
+    across_m = np.hypot(*let_go.sample.task_position_tip_m[:2])
+    assert across_m == pytest.approx(CLEARANCE_M, abs=0.02e-3)
 
 
 @pytest.mark.parametrize(

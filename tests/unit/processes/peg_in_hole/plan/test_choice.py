@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -46,6 +48,15 @@ def test_estimates_of_the_reference(task: SearchTask, name: SearchName, seconds:
 )
 def test_the_default_follows_from_the_geometry(task: SearchTask, first: SearchName) -> None:
     assert choose_search(task).order[0] is first
+
+
+def test_a_spiral_takes_the_place_of_a_valley_that_would_take_too_long() -> None:
+    # A thick pin on a stiff arm: the slides of a valley are as long as its radius.
+    task = pin(0.06, stiffness_n_m=7e5, dead_time_s=35e-3, uncertainty_m=1.5e-3)
+    thick = replace(task, fit=replace(task.fit, peg_radius_m=9.6e-3))
+    choice = choose_search(thick)
+    assert choice.estimates[SearchName.TILTED_VALLEY].value > thick.search_limit_s
+    assert choice.order == (SearchName.SPIRAL, SearchName.PARTICLE_MAP)
 
 
 @pytest.mark.parametrize("stiffness_n_m", [3e6, 1e7])

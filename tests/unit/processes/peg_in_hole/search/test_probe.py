@@ -7,10 +7,13 @@ import pytest
 
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.force.contact.streamed.gains import LoopFigures
+from cellctl.processes.peg_in_hole.first_contact.classify import ContactClass
+from cellctl.processes.peg_in_hole.plan.choice import SearchName
 from cellctl.processes.peg_in_hole.plan.parameters import search_parameters
 from cellctl.processes.peg_in_hole.search.conditions import against_a_wall
+from cellctl.processes.peg_in_hole.search.find_hole import find_hole
 from cellctl.processes.peg_in_hole.search.hole_map import HoleMap
-from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
+from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, Felt, TouchProbe
 from tests.unit.cell.contact_motion.elastic_world import ElasticWorld, Hole, Part, contact, wall
 from tests.unit.processes.peg_in_hole.tasks import pin
 
@@ -70,6 +73,30 @@ def test_a_peg_free_over_its_hole_enters_however_stiff_the_cell_is(
     assert world.tip[2] >= probe.task.fit.entry_depth_m
     assert probe.trace.points[-1].felt is Felt.ENTRY
     assert world.now_s - begun_s < probe.parameters.entry_time.value
+
+
+@pytest.mark.parametrize("stiffness_n_m", [1e5, _STIFF])
+def test_a_peg_that_stands_in_the_mouth_is_not_lifted_out_of_it(stiffness_n_m: float) -> None:
+    # The search centre lies beside the hole, and nothing there would be found within its map.
+    mouth = Hole(stiffness_n_m, np.array([9e-3, 0.0]), CLEARANCE_M, chamfer_m=1e-3, depth_m=12e-3)
+    world = standing_in(mouth, at_m=(9.3e-3, 0.0, 0.7e-3))
+    probe = probe_in(world, stiffness_n_m, 0.5)
+    order = (SearchName.SPIRAL,)
+    found_by = asyncio.run(find_hole(probe, order, first_contact=ContactClass.STUCK))
+    assert found_by is SearchName.SPIRAL
+    assert world.tip[0] == pytest.approx(9e-3, abs=0.2e-3)
+    assert not any(tip[2] < 0.0 for tip in world.sent)
+
+
+def test_a_touch_goes_down_as_fast_as_its_force_may_grow_by_a_whole_press() -> None:
+    world = standing_in(wall(1e6), at_m=(0.0, 0.0, -1e-3))
+    probe = probe_in(world, 1e6, 0.0)
+    begun_s = world.now_s
+    asyncio.run(probe.touch_down(np.zeros(2), UPRIGHT))
+    way_s = 0.3e-3 / probe.parameters.touch_speed.value
+    # Half a second for lift and way over the point.
+    assert way_s < world.now_s - begun_s < way_s + 0.5
+    assert greatest_n(world) < 1.5 * probe.press_n
 
 
 @pytest.mark.parametrize("stiffness_n_m", [1e5, _STIFF])
