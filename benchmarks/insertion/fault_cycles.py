@@ -43,7 +43,8 @@ EXPECTED: Mapping[CycleFault, frozenset[str]] = {
     CycleFault.PEG_SLIP: frozenset({"F591", "F592", "F593"}),
     CycleFault.TILTED_GRIP: frozenset({"F552", "F553"}),
     CycleFault.FROZEN: frozenset({"F504"}),
-    CycleFault.STUCK: frozenset({"F590", "F592", "F593"}),
+    # A value at which it stays on the way is a force that holds the part back.
+    CycleFault.STUCK: frozenset({"F590", "F591", "F592", "F593"}),
     CycleFault.SPIKES: frozenset({"F512"}),
     CycleFault.SIGN: frozenset({"F512", "F549", "F587", "F588", "F548", "F547"}),
 }
