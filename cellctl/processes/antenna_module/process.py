@@ -96,10 +96,16 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         """Another board than that of the stored cameras, and looks beside what was measured."""
         from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
         from cellctl.processes.antenna_module.checks.above import above_remarks
-        from cellctl.processes.antenna_module.checks.drawn import capture_remarks, holding_remarks
+        from cellctl.processes.antenna_module.checks.drawn import (
+            capture_remarks,
+            holding_remarks,
+            pitch_remarks,
+        )
         from cellctl.processes.antenna_module.checks.figures import board_remarks
         from cellctl.processes.antenna_module.checks.looks import look_remarks
+        from cellctl.processes.antenna_module.checks.plate_sides import plate_side_remarks
         from cellctl.processes.antenna_module.checks.plausible import marks_remarks
+        from cellctl.processes.antenna_module.checks.taught_drawings import taught_drawing_remarks
         from cellctl.processes.antenna_module.checks.uncalibrated import uncalibrated_remarks
 
         settings = cast(AntennaSettings, cell.processes[recipe.process])
@@ -110,6 +116,11 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         yield from marks_remarks(plugged, key)
         yield from capture_remarks(plugged, key, folder)
         yield from holding_remarks(plugged, key, folder)
+        yield from pitch_remarks(plugged, key, folder)
+        yield from taught_drawing_remarks(cell, plugged, key, folder)
+        if settings.reference is not None:
+            where = f"processes.{recipe.process}"
+            yield from plate_side_remarks(settings.reference, where, folder)
         yield from uncalibrated_remarks(cell, plugged, folder)
         yield from tool_floor_remarks(cell, plugged.device(ARM), plugged.flange_T_plug)
 

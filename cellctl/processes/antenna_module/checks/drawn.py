@@ -28,6 +28,10 @@ _OPEN_SHARE = 0.25
 """Of the way from the first touch of the springs to the seat, which a module that is called good
 may lack: three quarters of it are left to hold. For a micro-D 0.5 mm, twice what the defaults take.
 """
+_PITCHES = (1.6, 4.5)
+"""Distance of neighbouring contacts over the diameter of a pin. Micro-Ds (MIL-DTL-83513) have 2.5,
+nano-Ds (MIL-DTL-32139) 2.1, D-subs (DIN 41652) 2.8, circular connectors (MIL-DTL-38999) 2.9 to 3.1,
+headers 3.2 to 4."""
 _MASS_RATIO = 0.2
 """Modules of one drawing differ by a few percent: solder, screws, a label."""
 
@@ -91,6 +95,19 @@ def capture_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[C
             "how far off one plug still finds one socket"
         )
         yield ConfigIssue(f"{key}.plug", f"capture_mm = {plug.capture_m / MM:g} in it", said)
+
+
+def pitch_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
+    """Pins that are far thinner or thicker for their distance than those of any usual connector."""
+    plug = read_drawings(recipe, folder).plug
+    pitch_mm, wide_mm = plug.least_spacing_m / MM, plug.diameter_m / MM
+    if not _PITCHES[0] <= pitch_mm / wide_mm <= _PITCHES[1]:
+        said = (
+            f"its contacts are {pitch_mm:.3g} mm apart, {pitch_mm / wide_mm:.2g} times as far as "
+            f"its pins are wide, and those of usual connectors {_PITCHES[0]:g} to {_PITCHES[1]:g} "
+            "times: is it the radius, here and in the socket? Right if the connector has such pins"
+        )
+        yield ConfigIssue(f"{key}.plug", f"diameter_mm = {wide_mm:g} in it", said)
 
 
 def holding_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:

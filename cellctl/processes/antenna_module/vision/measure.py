@@ -14,7 +14,6 @@ from cellctl.processes.antenna_module.faults.connector import (
     ConnectorAmbiguous,
     ConnectorMissing,
     ConnectorUncertain,
-    MarksMissing,
     PlaneScaleWrong,
     WrongConnector,
 )
@@ -30,6 +29,10 @@ from cellctl.processes.antenna_module.vision.measurement import (
     MeasuredMarks,
 )
 from cellctl.processes.antenna_module.vision.one_sided_light import require_light_from_all_sides
+from cellctl.processes.antenna_module.vision.other_sizes import (
+    missing_marks,
+    spots_of_another_size,
+)
 from cellctl.processes.antenna_module.vision.pattern import (
     Candidates,
     Pattern,
@@ -49,9 +52,6 @@ _LEAST_SHARE = 0.6
 others may then be named as missing, bent or hidden."""
 _SCALE_LIMIT = 5.0
 """Deviation of the pattern's scale from that of its plane, in standard deviations of both."""
-_OTHER_SIZES = (2.0, 0.5)
-"""Diameters over the drawn one at which contacts are looked for where none of that size are: the
-fault then says that it is another connector, and not that there is none."""
 _SURPLUS = 2
 """Contacts more than drawn from which it is another connector."""
 _CONTACT_REACH = 0.35
@@ -205,11 +205,11 @@ def _marks_in(
     least = max(len(marks.names) - 1, 3)
     candidates = find_pattern(image, raised, pattern, least=least, chiral=True)
     if not candidates.placements and not candidates.mirrored:
-        raise MarksMissing(f"{len(candidates.spots.px)} spots, {least} marks needed")
+        raise missing_marks(image, raised, pattern, candidates, least)
     placement = choose(candidates, None, chiral=True)
     found = fit_pattern(image, raised, pattern, placement, candidates.spots_m)
     if found is None or np.count_nonzero(found.fit.used) < least:
-        raise MarksMissing("too few marks are clean and in their places")
+        raise missing_marks(image, raised, pattern, candidates, least)
     circles = [feature.circle for feature in found.features if feature.circle is not None]
     px = raised.to_px(np.array([circle.centre_m for circle in circles]))
     radius_px = marks.diameter_m / 2.0 / raised.m_per_px(found.fit.shift_m)
@@ -259,11 +259,8 @@ def _require_connector(
     count = len(candidates.spots.px)
     if count >= least:
         raise WrongConnector(f"{count} spots of this size, in another arrangement")
-    for size in _OTHER_SIZES:
-        other = pattern.with_diameter(size * pattern.diameter_m)
-        count = len(find_pattern(image, plane, other, least=least).spots.px)
-        if count >= least:
-            raise WrongConnector(f"{count} spots of {other.diameter_m / MM:.2f} mm diameter")
+    if (other := spots_of_another_size(image, plane, pattern, least)) is not None:
+        raise WrongConnector(other)
     raise ConnectorMissing(f"{len(candidates.spots.px)} spots, {least} contacts needed")
 
 

@@ -26,6 +26,8 @@ at least 0.49, and moves them by up to 30 µm."""
 _WIDEST = 1.14
 """Most of the rims' radius over the drawing's. Blur makes holes larger by up to 9 %; where the dark
 side of the funnel is taken for a part of the hole they are larger by 18 % and more."""
+_RADIUS = 1.7
+"""From here on the drawing may have the radius in place of the diameter, too."""
 _DIRECTIONS = 48
 _FLAT_TIP = 0.8
 """Share of the radius within which the tip of a pin without chamfer is looked at."""
@@ -37,9 +39,10 @@ def require_light_from_all_sides(
     """Raise ``LightFromOneSide``; ``rims`` are those of the clean contacts, in ``plane``."""
     wide = float(np.median([rim.radius_m for rim in rims])) * 2.0 / connector.diameter_m
     if wide > _WIDEST:
+        drawn = "; or is diameter_mm of the drawing the radius?" if wide > _RADIUS else ""
         raise LightFromOneSide(
             f"rims are {wide - 1.0:.0%} wider than drawn, at most {_WIDEST - 1.0:.0%}: one side of "
-            "what surrounds them is dark"
+            f"what surrounds them is dark{drawn}"
         )
     centres_m = np.array([rim.centre_m for rim in rims])
     share = one_sidedness(image, plane, centres_m, slant_radius_m(connector))

@@ -17,6 +17,9 @@ _LEAST_KEY_PLAY_MM = 0.01
 """To either side of a key: half the width of the closest fit in which one slides (H7/g6)."""
 _WIDE_MM, _WIDE_SHARE = 0.1, 0.02
 """Radial clearance of the widest usual fits: so much, and so much of the radius."""
+_FAR_OUT = 1.35
+"""Times the least radius of the touches; a wider circle tells the tilt of the face better, and a
+twice as wide one needs a face four times as large."""
 _PLACES_SHARE = 0.8
 """Of the radius that holds 99 of 100 places, the one that holds 95: 2.45 over 3.03 standard
 deviations of two equal axes."""
@@ -108,8 +111,29 @@ def _touches(recipe: PegRecipe, key: str) -> Bound:
         f"edge at {edge_mm:g} mm, where the hole may be {off_mm:g} mm off (uncertainty_mm = "
         f"{place.uncertainty_mm:g}); or peg_radius_mm is a diameter"
     )
-    least_mm = edge_mm + fit.peg_radius_mm - fit.peg_chamfer_mm + off_mm
+    least_mm = _least_face_radius_mm(recipe)
     return Bound(f"{key}.base_T_hole.face_radius_mm", place.face_radius_mm, why, least=least_mm)
+
+
+def _least_face_radius_mm(recipe: PegRecipe) -> float:
+    """Radius of the circle on which a part touches beside its hole, wherever that is."""
+    fit, place = recipe.fit, recipe.base_T_hole
+    edge_mm = _edge_mm(fit, datum=place.datum_depth_mm > 0.0)
+    off_mm = _PLACES_SHARE * place.uncertainty_mm
+    return edge_mm + fit.peg_radius_mm - fit.peg_chamfer_mm + off_mm
+
+
+def far_touches(recipe: PegRecipe) -> str | None:
+    """What is to be said of touches that are farther out than this part needs."""
+    least_mm, radius_mm = _least_face_radius_mm(recipe), recipe.base_T_hole.face_radius_mm
+    if radius_mm <= _FAR_OUT * least_mm:
+        return None
+    return (
+        f"{radius_mm / least_mm:.2g} times the {least_mm:.3g} mm at which a part of peg_radius_mm "
+        f"= {recipe.fit.peg_radius_mm:g} touches beside its hole, and nothing in the file says "
+        "that the face reaches so far. Is it a diameter, or peg_radius_mm half of the radius? "
+        "Right if the face is so wide"
+    )
 
 
 def _proud(recipe: PegRecipe, key: str) -> Iterator[Bound]:

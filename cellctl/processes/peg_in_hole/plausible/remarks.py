@@ -11,7 +11,7 @@ from cellctl.config.checks.over_places import unmeasured_height
 from cellctl.config.checks.sensor_places import straight_mm
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.plan.cycle_plan import search_task
-from cellctl.processes.peg_in_hole.plausible.fit import wide_clearance
+from cellctl.processes.peg_in_hole.plausible.fit import far_touches, wide_clearance
 from cellctl.processes.peg_in_hole.plausible.loop import soft_arm
 from cellctl.processes.peg_in_hole.plausible.stream import over_hole
 from cellctl.processes.peg_in_hole.recipe import PegRecipe
@@ -34,6 +34,9 @@ def recipe_remarks(
     fit = recipe.fit
     if (said := wide_clearance(fit)) is not None:
         yield ConfigIssue(f"{key}.fit.clearance_mm", f"{fit.clearance_mm:g}", said)
+    if (said := far_touches(recipe)) is not None:
+        written = f"{recipe.base_T_hole.face_radius_mm:g}"
+        yield ConfigIssue(f"{key}.base_T_hole.face_radius_mm", written, said)
     if fit.friction > _ROUGH:
         push_n = push_force_n(search_task(recipe, settings).cell)
         said = (

@@ -11,6 +11,7 @@ from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.deck_to_frame.checks.hole_sizes import hole_size_remarks
+from cellctl.processes.deck_to_frame.checks.pin_sizes import pin_size_remarks
 from cellctl.processes.deck_to_frame.checks.plausible.drawing import PartDrawing, read_drawings
 from cellctl.processes.deck_to_frame.checks.plausible.loads import load_remarks
 from cellctl.processes.deck_to_frame.checks.plausible.stored import (
@@ -32,28 +33,6 @@ spread along it."""
 _LEAST_PLACE_MM = 0.0013
 """What the best coordinate measuring machines tell of a place over 0.5 m, 0.9 µm + L/350 (greatest
 permissible error by their makers, ISO 10360-2), over the root of three."""
-_DOWELS_MM = (
-    1.0,
-    1.5,
-    2.0,
-    2.5,
-    3.0,
-    4.0,
-    5.0,
-    6.0,
-    8.0,
-    10.0,
-    12.0,
-    16.0,
-    20.0,
-    25.0,
-    30.0,
-    40.0,
-    50.0,
-)
-"""Diameters of ISO 8734 and ISO 2338 that are in use."""
-_TIGHTER_MM, _WIDER_MM = 0.05, 0.2
-"""Of the hole of a dowel: pressed in, and with play."""
 _WIDEST_HEAD = 3.0
 """Over the bore of its screw; countersunk heads have 1.8 to 2.2 (ISO 10642, ISO 15065)."""
 _USUAL_PAST_MM, _USUAL_WINDOW_MM = 0.5, 1.0
@@ -73,7 +52,7 @@ def recipe_remarks(
     for drawing in (deck, frame):
         yield from _lines(drawing)
         yield from _exact_places(drawing)
-    yield from _dowels(deck)
+    yield from pin_size_remarks(deck, frame)
     yield from _countersinks(deck)
     yield from _thickness_once(recipe, key, deck)
     yield from _compared(recipe, key)
@@ -116,23 +95,6 @@ def _exact_places(drawing: PartDrawing) -> Iterator[ConfigIssue]:
             "it is"
         )
         yield drawing.issue("position_sigma_mm", f"{sigma_mm:g}", said)
-
-
-def _dowels(deck: PartDrawing) -> Iterator[ConfigIssue]:
-    """A pin hole for which there is no pin; that of the frame is held against it."""
-    for hole in deck.features.holes:
-        wide_mm = hole.diameter_m / MM
-        if hole.kind != "pin":
-            continue
-        if not any(-_TIGHTER_MM <= wide_mm - dowel_mm <= _WIDER_MM for dowel_mm in _DOWELS_MM):
-            below = [f"{one:g}" for one in _DOWELS_MM if one < wide_mm][-1:]
-            above = [f"{one:g}" for one in _DOWELS_MM if one > wide_mm][:1]
-            said = (
-                f"no dowel has this diameter (ISO 8734: {' or '.join(below + above)}); right if "
-                "the pin is a special one"
-            )
-            yield deck.hole_issue(hole.name, "diameter_mm", f"{wide_mm:g}", said)
-            return
 
 
 def _countersinks(deck: PartDrawing) -> Iterator[ConfigIssue]:

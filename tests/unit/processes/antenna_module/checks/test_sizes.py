@@ -1,0 +1,92 @@
+"""Sizes in the drawings of the antenna cell that are half or twice what they should be."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from shutil import copytree
+
+import pytest
+
+from cellctl.config.commissioning import examine_before_commissioning
+
+CONFIG = Path(__file__).parents[5] / "config"
+PINS, HOLES = "micro-d-15-pins", "micro-d-15-holes"
+ABOVE, BELOW = "reference-plate-above", "reference-plate-below"
+REFERENCE = "processes.antenna-module.reference"
+
+Change = tuple[str, str, str]
+"""A drawing, what stands in it, what is written instead."""
+
+
+def remarks(folder: Path, changes: Sequence[Change], *, calibrated: bool = True) -> dict[str, str]:
+    """What is said beside the antenna cell with these drawings, which is good."""
+    copytree(CONFIG / "connectors", folder / "connectors")
+    (folder / "antenna-calibration").mkdir()
+    if calibrated:
+        copytree(CONFIG / "antenna-calibration", folder / "antenna-calibration", dirs_exist_ok=True)
+    for name, old, new in changes:
+        path = folder / "connectors" / f"{name}.toml"
+        text = path.read_text(encoding="utf-8")
+        assert old in text
+        path.write_text(text.replace(old, new, 1), encoding="utf-8")
+    (folder / "antenna.toml").write_text((CONFIG / "antenna.toml").read_text(encoding="utf-8"))
+    examined = examine_before_commissioning(folder / "antenna.toml")
+    assert examined.errors == ()
+    said: dict[str, str] = {}
+    for one in examined.remarks:
+        said[one.key] = f"{said.get(one.key, '')} {one.allowed}"
+    return said
+
+
+@pytest.mark.parametrize(
+    ("pin_mm", "hole_mm", "times"), [("0.25", "0.28", "5 times"), ("1.0", "1.12", "1.3 times")]
+)
+def test_pins_that_no_usual_connector_has_at_this_distance(
+    tmp_path: Path, pin_mm: str, hole_mm: str, times: str
+) -> None:
+    both = (
+        (PINS, "diameter_mm = 0.5", f"diameter_mm = {pin_mm}"),
+        (HOLES, "diameter_mm = 0.56", f"diameter_mm = {hole_mm}"),
+    )
+    said = remarks(tmp_path, both, calibrated=False)
+    assert f"{times} as far as its pins are wide" in said["recipes.0.plug"]
+
+
+@pytest.mark.parametrize(
+    ("name", "old", "new", "key", "kinds"),
+    [
+        ("gripper", "= 2.0", "= 1.0", "recipes.0.gripper_marks", "plug_correction_1 and reference"),
+        (ABOVE, "diameter_mm = 1.2", "diameter_mm = 0.6", f"{REFERENCE}.plate_above", "reference"),
+        (BELOW, "diameter_mm = 1.2", "diameter_mm = 0.6", f"{REFERENCE}.plate_below", "reference"),
+        (HOLES, "diameter_mm = 0.56", "diameter_mm = 0.6", "recipes.0.socket", "plug_correction_1"),
+    ],
+)
+def test_a_drawing_with_which_nothing_stored_was_taught(
+    tmp_path: Path, name: str, old: str, new: str, key: str, kinds: str
+) -> None:
+    said = remarks(tmp_path, [(name, old, new)])
+    assert f"with which the stored {kinds} was taught" in said[key]
+    assert "F563" in said[key]
+
+
+def test_in_a_new_cell_the_two_sides_of_the_plate_tell_a_radius(tmp_path: Path) -> None:
+    halved = [(BELOW, "diameter_mm = 1.2", "diameter_mm = 0.6")]
+    said = remarks(tmp_path, halved, calibrated=False)
+    assert "plate_above has diameter_mm = 1.2, this one 0.6" in said[f"{REFERENCE}.plate_below"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("[3.0, -1.4]", "[5.0, -1.4]", "nearer to each other or farther apart"),
+        ('"D3"', '"E3"', "plate_above has the dots D1, D2, D3, D4, D5, this one D1, D2, E3"),
+    ],
+)
+def test_dots_that_lie_elsewhere_or_are_called_otherwise_from_below(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    said = remarks(tmp_path, [(BELOW, old, new)], calibrated=False)
+    assert words in said[f"{REFERENCE}.plate_below"]
+
+
+def test_the_shipped_drawings_are_those_of_the_shipped_calibrations(tmp_path: Path) -> None:
+    assert remarks(tmp_path, []) == {}
