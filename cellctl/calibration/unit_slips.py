@@ -18,6 +18,7 @@ from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
 _LEAST_MM = 20.0
 """When every coordinate of a file is smaller, it was written in metres: no arm works within 20 mm
 of its base."""
+_JOINTS = "joints_deg"
 _LARGEST_RAD = 2.0 * math.pi
 """When every joint of a file is smaller, it was written in radians."""
 
@@ -25,26 +26,45 @@ _LARGEST_RAD = 2.0 * math.pi
 def require_usual_units(file: str, content: object) -> None:
     """Raise ``FileInvalid`` for places that look like metres, and joints that look like radians.
 
-    ``content`` is the file as it was written. Judged is the largest number of all places, or of all
-    joints, of one key: a single small one is none of these.
+    ``content`` is the file as it was written. Judged is the largest number of all places of one
+    key, or of all joints in one table of the file: a single small one is none of these.
     """
     places: dict[str, float] = defaultdict(float)
     joints: dict[str, float] = defaultdict(float)
-    for key, numbers in _vectors(content, ""):
-        kept = joints if key == "joints_deg" else places
-        kept[key] = max(kept[key], *(abs(number) for number in numbers))
+    for table, tables_content in _tables(content):
+        for key, numbers in _vectors(tables_content, table):
+            largest = max(abs(number) for number in numbers)
+            if key == _JOINTS:
+                joints[table] = max(joints[table], largest)
+            else:
+                places[key] = max(places[key], largest)
     for key, largest in places.items():
         if 0.0 < largest < _LEAST_MM:
             raise FileInvalid(f"{file}: {key}: millimetres belong here; these look like metres")
-    for key, largest in joints.items():
+    for table, largest in joints.items():
         if 0.0 < largest <= _LARGEST_RAD:
-            raise FileInvalid(f"{file}: {key}: degrees belong here; these look like radians")
+            where = _JOINTS if table == _JOINTS else f"{table}, {_JOINTS}"
+            raise FileInvalid(f"{file}: {where}: degrees belong here; these look like radians")
 
 
 def meant_in_radians(pose: RigidTransform) -> RigidTransform:
     """The pose whose angles were written in radians and read as degrees."""
     written = pose_to_xyzabc(pose)
     return pose_from_xyzabc([*written[:3], *np.degrees(written[3:])])
+
+
+def written_in_radians(poses: Sequence[RigidTransform]) -> bool:
+    """Whether no angle of these poses, read as degrees, is more than a turn in radians."""
+    largest = max(float(np.abs(pose_to_xyzabc(pose)[3:]).max()) for pose in poses)
+    return 0.0 < largest <= _LARGEST_RAD
+
+
+def _tables(content: object) -> Iterator[tuple[str, object]]:
+    """What stands under each key of the file."""
+    if isinstance(content, Mapping):
+        yield from ((str(name), value) for name, value in content.items())
+    else:
+        yield "", content
 
 
 def _vectors(content: object, key: str) -> Iterator[tuple[str, Sequence[float]]]:
@@ -64,7 +84,7 @@ def _of_list(content: list[Any], key: str) -> Iterator[tuple[str, Sequence[float
     if _is_matrix(content):
         yield key, [float(row[3]) for row in content[:3]]
     elif _are_numbers(content):
-        if key == "joints_deg":
+        if key == _JOINTS:
             yield key, content
         elif len(content) == 6 or (len(content) == 3 and key in ("position_mm", "drawing_mm")):
             yield key, content[:3]

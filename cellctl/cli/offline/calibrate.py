@@ -32,7 +32,7 @@ from cellctl.calibration.solvers.transfer.transfer_mistakes import (
     require_unmistaken,
 )
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
 from cellctl.cli.offline.calibration_output import Picture, finish
 from cellctl.cli.offline.heads_of_cell import compare_heads
@@ -109,11 +109,11 @@ def base_frame(
     if cell is not None:
         _compare_with_cell(file, cell, arm)
     else:
-        console_of_lines().print(
+        note = (
             f"note: nothing here has checked d1_mm = {arm.d1_m / MM:g}; a wrong one moves the base "
-            "along A1 by as much. Compare it with the data sheet, and give --cell",
-            style="yellow",
+            "along A1 by as much. Compare it with the data sheet, and give --cell"
         )
+        print_hanging(console_of_lines(), note, 6, "yellow")
     finish(result, warnings, out, picture, lambda: base_frame_picture(result))
 
 
@@ -184,7 +184,8 @@ def _show(name: str, pose: UncertainPose) -> None:
     sigma = pose.sigma
     # Nothing that was measured is exact: no uncertainty means that the input has not said it.
     turn = f"{np.degrees(sigma[3:].max()):.5f}°" if sigma[3:].any() else "angles not measured"
-    console_of_lines().print(
+    text = (
         f"{name}: X {x:.4f}, Y {y:.4f}, Z {z:.4f} mm, A {a:.5f}, B {b:.5f}, C {c:.5f}°; "
-        f"sigma {sigma[:3].max() / MM:.4f} mm, {turn}",
+        f"sigma {sigma[:3].max() / MM:.4f} mm, {turn}"
     )
+    print_hanging(console_of_lines(), text, len(name) + 2)

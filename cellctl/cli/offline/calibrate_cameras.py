@@ -30,7 +30,7 @@ from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.offline.board_options import (
     Asymmetric,
     BoardSize,
@@ -238,4 +238,4 @@ def _says(path: Path, side: str) -> bool:
 
 def _say_left_out(console: Console, not_found: Sequence[str]) -> None:
     if not_found:
-        console.print(f"board not found, left out: {'; '.join(not_found)}")
+        print_hanging(console, f"board not found, left out: {'; '.join(not_found)}", 2)

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Annotated, Protocol
 
 import typer
+from rich.console import Console
 
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.output_file import write_file
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
 
 NOT_PASSED = 3
 """Exit code when a figure of the result is beyond its limit."""
@@ -32,6 +33,12 @@ class CalibrationResult(Protocol):
         """Plain data."""
 
 
+def print_checks(console: Console, checks: Checks) -> None:
+    """Every figure with its limit and verdict."""
+    for check in checks:
+        print_hanging(console, f"  {'ok  ' if check.passed else 'FAIL'}  {check}", 8)
+
+
 def finish(
     result: CalibrationResult,
     warnings: tuple[str, ...],
@@ -41,10 +48,9 @@ def finish(
 ) -> None:
     """Print the checks, write the files, and leave with the verdict as exit code."""
     console = console_of_lines()
-    for check in result.checks:
-        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
+    print_checks(console, result.checks)
     for warning in warnings:
-        console.print(f"  warning: {warning}")
+        print_hanging(console, f"  warning: {warning}", 11)
     # Also when it did not pass: the figures show why, and the exit code keeps a script from using
     # it.
     if out is not None:

@@ -10,7 +10,8 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.calibration.output_file import write_file
-from cellctl.cli.consoles import console_of_lines
+from cellctl.cli.consoles import console_of_lines, print_hanging
+from cellctl.cli.offline.calibration_output import print_checks
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
 from cellctl.force.gravity.pose_file import PoseRecord, parse_pose_file
@@ -63,7 +64,7 @@ def identify_payload(
     _say_what_else(hint or _order_hint(result, record), result, mass_kg, console)
     if not lever.passed:
         words = lever_words(rigid, fit.base_R_sensor)
-        console.print(f"note: {words}", style="yellow")
+        print_hanging(console, f"note: {words}", 6, "yellow")
     if out is not None:
         write_file(out, json.dumps(payload_document(result), indent=2).encode() + b"\n")
     if picture is not None:
@@ -106,13 +107,13 @@ def _show(result: PayloadResult, console: Console) -> None:
     console.print(table)
     # Without this note a weight that points up would look like a mistake.
     if rigid.reads_reaction:
-        console.print(
+        note = (
             "note: weight points up in this file, so it states reactions, not loads: in a cell a "
             "contact would read as a pull. Set 'inverted' of the sensor's settings otherwise; "
             "procedure 106 accepts no such sensor"
         )
-    for check in result.checks:
-        console.print(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
+        print_hanging(console, note, 6)
+    print_checks(console, result.checks)
 
 
 def _say_what_else(
@@ -120,14 +121,14 @@ def _say_what_else(
 ) -> None:
     """What the tests do not find: another unit, another order, a mass that nobody compared."""
     if hint:
-        console.print(f"note: {hint}", style="yellow")
+        print_hanging(console, f"note: {hint}", 6, "yellow")
     if mass_kg is None:
         found_kg = result.identification.rigid.mass_kg
         text = (
             f"note: nothing here has checked mass and units: compare {found_kg:.3g} kg with the "
             "drawing, or give it by --mass-kg"
         )
-        console.print(text, style="yellow")
+        print_hanging(console, text, 6, "yellow")
 
 
 def _numbers(values: object) -> str:

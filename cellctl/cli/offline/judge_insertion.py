@@ -13,6 +13,8 @@ import typer
 from cellctl import plugins
 from cellctl.calibration.judged_insertion import InsertionJudge, JudgedInsertion
 from cellctl.calibration.output_file import write_file
+from cellctl.cli.consoles import console_of_lines, print_hanging
+from cellctl.cli.offline.calibration_output import print_checks
 
 NOT_GOOD = 3
 BY_CONNECTOR, BY_TASK = "connector", "task"
@@ -39,13 +41,13 @@ def judge_insertion(
     Give --connector or --task, whichever says what was inserted.
     """
     judged = _judged(curve, connector, task)
-    for check in judged.checks:
-        typer.echo(f"  {'ok  ' if check.passed else 'FAIL'}  {check}")
+    console = console_of_lines()
+    print_checks(console, judged.checks)
     for sentence in judged.said:
-        typer.echo(f"  {sentence}")
-    typer.echo(judged.verdict)
+        print_hanging(console, f"  {sentence}", 2)
+    console.print(judged.verdict)
     if judged.fault is not None:
-        typer.echo(str(judged.fault))
+        print_hanging(console, str(judged.fault), 5)
     if out is not None:
         text = json.dumps(judged.record, indent=2, allow_nan=False) + "\n"
         write_file(out, text.encode())

@@ -59,6 +59,17 @@ def test_another_unit_is_refused(
         read_input(path, MODELS[name])
 
 
+@pytest.mark.parametrize("axis", ["a1", "a2"])
+def test_the_stops_of_one_axis_alone_in_radians_are_refused(tmp_path: Path, axis: str) -> None:
+    """Copied from two programs: the axis would be found kilometres away."""
+    content = json.loads((SAMPLES / "base-frame.json").read_text())
+    content[axis] = changed(content[axis], "joints_deg", lambda number: number * 0.0174533)
+    path = tmp_path / "base-frame.json"
+    path.write_text(json.dumps(content))
+    with pytest.raises(FileInvalid, match=f"{axis}, joints_deg: degrees belong here"):
+        read_input(path, BaseFrameFile)
+
+
 def test_flange_poses_in_metres_are_refused(tmp_path: Path) -> None:
     content = json.loads((SAMPLES / "tool.json").read_text())
     for pose in content["touching"]:

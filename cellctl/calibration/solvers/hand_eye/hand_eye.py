@@ -35,6 +35,7 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_start import (
     closed_form,
     turns_agree,
 )
+from cellctl.calibration.unit_slips import written_in_radians
 from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import MM, Array
 from cellctl.geometry.uncertain import UncertainPose
@@ -113,6 +114,10 @@ def _start(
         x, z, spread = _closed_form(poses, setup)
     except (RobotCameraMismatch, PosesNotDiverse) as fault:
         hint = explanation(poses, setup) if len(poses) >= MIN_POSES else None
+        if hint is None and isinstance(fault, PosesNotDiverse) and _small_turns(poses):
+            raise PosesNotDiverse(
+                f"{fault.detail}; are the angles of robot and board written in radians?"
+            ) from fault
         if hint is None:
             raise
         raise RobotCameraMismatch(f"{fault.detail}; {hint}") from fault
@@ -124,6 +129,13 @@ def _start(
         said = f"the board is off by {distance_m / MM:.0f} mm in the setup {setup.value}"
         raise RobotCameraMismatch(f"{said}; {hint}" if hint else said)
     return x, z, spread
+
+
+def _small_turns(poses: Sequence[HandEyePose]) -> bool:
+    """Both in radians fit each other, as turns that are nearly none."""
+    return written_in_radians([pose.base_T_flange for pose in poses]) and written_in_radians(
+        [pose.camera_T_board.pose for pose in poses]
+    )
 
 
 def _closed_form(

@@ -538,3 +538,18 @@ def test_stereo_with_an_image_too_few(images: Path, tmp_path: Path) -> None:
                   "--board", "9x6", "--square-mm", 20, "--out", out)  # fmt: skip
     assert "10 left but 12 right images" in str(result.exception)
     assert not out.exists()
+
+
+SAMPLES = Path(__file__).parents[4] / "config" / "samples"
+
+
+@pytest.mark.parametrize(("name", "width"), [("transfer", 80), ("base-frame", 60)])
+def test_on_a_terminal_no_line_is_wider_than_it(name: str, width: int) -> None:
+    """Into a file each thing stays one line."""
+    arguments = [name, "--in", str(SAMPLES / f"{name}.json")]
+    there = {"FORCE_COLOR": "1", "NO_COLOR": "1", "COLUMNS": str(width)}
+    lines = CliRunner(env=there).invoke(app, arguments).output.splitlines()
+    piped = CliRunner().invoke(app, arguments).output.splitlines()
+    assert max(len(line) for line in piped) > width
+    assert max(len(line) for line in lines) <= width
+    assert " ".join(" ".join(lines).split()) == " ".join(" ".join(piped).split())

@@ -10,7 +10,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.solvers.hand_eye.hand_eye import calibrate_hand_eye
 from cellctl.calibration.solvers.hand_eye.hand_eye_mistakes import explanation
 from cellctl.calibration.solvers.hand_eye.hand_eye_result import HandEyePose, Setup
-from cellctl.errors.calibration import RobotCameraMismatch
+from cellctl.errors.calibration import PosesNotDiverse, RobotCameraMismatch
 from cellctl.geometry.pose import pose_from_xyzabc, pose_to_xyzabc
 from tests.rigs.calibration.hand_eye_views import make_poses
 from tests.rigs.sweeps import sweep
@@ -116,3 +116,11 @@ def test_a_board_that_was_taken_for_turned() -> None:
     result = calibrate_hand_eye(poses, Setup.EYE_IN_HAND)
     assert result.rejected == ("pose 6",)
     assert "in pose 6 the board was taken for turned by 180°" in result.warnings
+
+
+def test_radians_in_both_fit_each_other_and_are_asked_about() -> None:
+    poses = changed(
+        make_poses(0, Setup.EYE_IN_HAND), radians_for_degrees, board=radians_for_degrees
+    )
+    with pytest.raises(PosesNotDiverse, match="robot and board written in radians"):
+        calibrate_hand_eye(poses, Setup.EYE_IN_HAND)
