@@ -41,7 +41,7 @@ class ImageFileInvalid(VisionError):
 
     number = 403
     text = "Image file cannot be used"
-    cause = "The file is missing, not an image, or not 8 bit."
+    cause = "The file is missing, cut off, not an image, or not 8 bit."
     remedy = "Give an 8 bit image as the camera delivered it."
     reaction = Reaction.STOP
 

@@ -109,10 +109,10 @@ def stereo(
         )
 
     result = _chosen(calibrated, lambda one: one.held_out_m, board_shape, lens)
-    console.print(result.method)
+    print_hanging(console, result.method, 2)
     for view in result.views:
         rms = f"{view.left_rms_px:.3f} px left, {view.right_rms_px:.3f} px right"
-        console.print(f"  {view.name}: {rms}{_weight(view.shift_sigmas)}")
+        print_hanging(console, f"  {view.name}: {rms}{_weight(view.shift_sigmas)}", 4)
     baseline_mm = float(np.linalg.norm(result.head.translation_m)) / MM
     console.print(f"baseline {baseline_mm:.4f} mm; board flat to {result.flatness_m / MM:.3f} mm")
     unchecked = f"nothing tells whether squares of {square_mm:g} mm are right: give "
@@ -153,10 +153,10 @@ def camera(
         )
 
     result = _chosen(calibrated, lambda one: one.held_out_px, board_shape, lens)
-    console.print(result.method)
+    print_hanging(console, result.method, 2)
     for view in result.views:
         weight = _weight(view.shift_sigmas)
-        console.print(f"  {view.name}: {view.rms_px:.3f} px{weight}")
+        print_hanging(console, f"  {view.name}: {view.rms_px:.3f} px{weight}", 4)
     matrix, sigma = result.camera.model.camera_matrix, result.sigma
     for name, value, one in (
         ("focal length", (matrix[0, 0], matrix[1, 1]), sigma[:2]),
@@ -165,7 +165,8 @@ def camera(
         console.print(
             f"{name} {value[0]:.2f}, {value[1]:.2f} px, sigma {one[0]:.2f}, {one[1]:.2f} px"
         )
-    console.print(f"board flat to {result.flatness_m / MM:.4f} mm; id {result.camera.id}")
+    identity = f"board flat to {result.flatness_m / MM:.4f} mm; id {result.camera.id}"
+    print_hanging(console, identity, 2)
     finish(result, result.warnings, out, picture, lambda: single_camera_picture(result))
 
 
@@ -217,6 +218,11 @@ def _matching(pattern: str) -> list[Path]:
     found = sorted(glob.glob(pattern))
     if not found:
         raise FileInvalid(f"no file matches {pattern}")
+    if folders := [one for one in found if Path(one).is_dir()]:
+        raise FileInvalid(
+            f"{folders[0]} is a folder: give a pattern of the images in it, such as "
+            f"'{folders[0]}/*.png', in quotes"
+        )
     return [Path(one) for one in found]
 
 

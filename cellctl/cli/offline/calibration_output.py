@@ -1,7 +1,7 @@
 """How every offline calibration ends: checks, files, and the verdict as exit code."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Protocol
 
@@ -16,6 +16,14 @@ NOT_PASSED = 3
 """Exit code when a figure of the result is beyond its limit."""
 
 Picture = Annotated[Path | None, typer.Option(help="Write the evidence as PNG.")]
+
+
+class JudgedFigure(Protocol):
+    """A figure that reads as one with its limit."""
+
+    @property
+    def passed(self) -> bool:
+        """Whether it keeps its limit."""
 
 
 class CalibrationResult(Protocol):
@@ -33,7 +41,7 @@ class CalibrationResult(Protocol):
         """Plain data."""
 
 
-def print_checks(console: Console, checks: Checks) -> None:
+def print_checks(console: Console, checks: Iterable[JudgedFigure]) -> None:
     """Every figure with its limit and verdict."""
     for check in checks:
         print_hanging(console, f"  {'ok  ' if check.passed else 'FAIL'}  {check}", 8)

@@ -21,6 +21,7 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.camera.image_file import read_unchanged
 from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
 from cellctl.vision.diameters import other_diameters
 from cellctl.vision.features.feature_file import FeatureFile, read_features
@@ -120,15 +121,7 @@ def _require_drawn_diameters(
 
 def read_image(path: Path) -> Image:
     """An 8 bit grey image from a file; raises ``ImageFileInvalid``."""
-    try:
-        # Read here instead of by OpenCV, which returns nothing at all for a missing file, without a
-        # reason.
-        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    except OSError as error:
-        raise ImageFileInvalid(f"{path}: {error.strerror or error}") from error
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
-    if image is None:
-        raise ImageFileInvalid(f"{path}: not an image")
+    image = read_unchanged(path)
     # Many programs save grey images with three equal channels. Images of more than 8 bit are
     # refused: to scale them would be a guess about their range.
     if image.ndim == 3 and image.dtype == np.uint8:

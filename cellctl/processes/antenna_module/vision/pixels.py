@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from cellctl.errors.vision import ImageFileInvalid
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.vision.camera.image_file import read_unchanged
 
 Pixels = Literal["auto", "bayer"]
 Channel = Literal["green", "red", "blue"]
@@ -44,14 +45,7 @@ class MeasuredPixels:
 
 def read_pixels(path: Path, pixels: Pixels = "auto", channel: Channel = "green") -> MeasuredPixels:
     """Read an 8 bit image, grey, colour or raw mosaic RGGB; raises ``ImageFileInvalid``."""
-    try:
-        # Read here instead of by OpenCV, which gives no reason for a file that is not there.
-        data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
-    except OSError as error:
-        raise ImageFileInvalid(f"{path}: {error.strerror or error}") from error
-    image = cv2.imdecode(data, cv2.IMREAD_UNCHANGED) if data.size else None
-    if image is None:
-        raise ImageFileInvalid(f"{path}: not an image")
+    image = read_unchanged(path)
     if image.dtype != np.uint8:
         raise ImageFileInvalid(f"{path}: needs 8 bit values, has {image.dtype}")
     try:

@@ -87,6 +87,7 @@ def test_wrong_inputs_are_named_and_nothing_is_written(images: Path, tmp_path: P
     cv2.imwrite(str(tmp_path / "same-8.png"), small)
     cases: tuple[tuple[str, str, type[Exception], str], ...] = (
         (f"{images}/none-*.png", "7x4", FileInvalid, "no file matches"),
+        (f"{images}", "7x4", FileInvalid, "is a folder: give a pattern of the images in it"),
         (f"{tmp_path}/text.png", "7x4", ImageFileInvalid, "text.png"),
         (f"{images}/c-0[0-2].png", "7x4", TooFewViews, "3 usable views"),
         (f"{tmp_path}/same-8.png", "8x5", WrongBoard, "8 x 5"),
