@@ -30,12 +30,12 @@ from cellctl.records.store import RunStore
 from cellctl.runtime.cell_status import CellStatus
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.unit import UnitController
+from tests.rigs.waiting import until
 from tests.unit.cell.bench import Bench, TruthMeasurer, start_command
 from tests.unit.processes.deck_to_frame.rig import curve, seated
 
 WAIT_S = 60.0
 """Time for what has to come: long, since only a test that fails waits for it to its end."""
-POLL_S = 0.002
 BY_ANNA: dict[str, Any] = {"source": Source.TERMINAL, "person": "anna"}
 
 
@@ -201,10 +201,7 @@ class DaemonRig:
         return self._seq
 
     async def until(self, condition: Callable[[], bool]) -> None:
-        async with asyncio.timeout(WAIT_S):
-            while not condition():  # noqa: ASYNC110 - whatever the unit does next may be it
-                # Not at every turn of the loop: the store's thread needs the interpreter meanwhile.
-                await asyncio.sleep(POLL_S)
+        await until(condition, WAIT_S)
 
     async def runs(self) -> list[RunHead]:
         await self.unit.background.drain()
