@@ -114,7 +114,7 @@ bench-guard: venv
 page-pictures: venv
 	$(BIN)/python -m benchmarks.page.pictures
 
-# What 50 readers of the page cost the cell; on a computer that has nothing else to do.
+# What 50 readers of the page cost the cell, and a page that is frozen or gone; on a computer that has nothing else to do.
 bench-page: venv
 	$(BIN)/python -m benchmarks.page.clients
 

@@ -1,19 +1,22 @@
-"""What readers of the page cost the cell: `python -m benchmarks.page.clients`.
+"""What the page costs the cell, with many readers and broken: `python -m benchmarks.page.clients`.
 
-A whole fake cell with its page stands on this computer. Without and with readers of the live view,
-in turn: the time from a sample on the wire to the stop request on the wire, of a guard beside it
-(as in ``make bench-guard``), and the time for a good part. On a computer that others share only the
-ratios say something, and these only over many turns.
+A whole fake cell with its page stands on this computer. In turn, without and with readers of the
+live view, and with a page that is frozen or was killed: the time from a sample on the wire to the
+stop request on the wire, of a guard beside it (as in ``make bench-guard``), how late the daemon's
+ticks come, how long a command takes to its verdict, and the time for a good part. On a computer
+that others share only the ratios say something, and these only over many turns.
 """
 
 import json
 import multiprocessing
 import os
+import signal
 import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -23,17 +26,30 @@ from rich.console import Console
 from rich.table import Table
 
 from benchmarks.guard.latency import measure
-from benchmarks.page.readers import Heard, add_readers, read
+from benchmarks.page.readers import STREAMS_EACH, Heard, add_readers, read
+from benchmarks.page.ticks import followed
+from benchmarks.page.verdicts import PROGRAMS, commanded
 from benchmarks.soak.cell import SoakedCell
+from cellctl.hmi.settings import load_settings
 from fakes.demo.page import write_settings
 
 GRACE_S = 30.0
 
 
+class Page(StrEnum):
+    """What becomes of the page in a turn."""
+
+    QUIET = "no readers"
+    READ = "readers"
+    FROZEN = "frozen page"
+    KILLED = "no page"
+
+
 @dataclass(frozen=True, slots=True)
 class Turn:
-    """One turn with so many readers."""
+    """One turn."""
 
+    page: Page
     readers: int
     guard_ms: tuple[float, ...]
     """p50, p99, p99.9 and the maximum, without what overlaps a stall of the machine."""
@@ -43,6 +59,10 @@ class Turn:
     """Share of one core."""
     late_ms: tuple[float, float]
     """Of the snapshots at the readers: p50, p99; NaN without readers."""
+    tick_late_ms: tuple[float, float]
+    """Of the daemon's ticks, against their period: p50, p99."""
+    verdict_ms: tuple[float, float]
+    """From a command at the page to the daemon's answer: p50, p99; NaN for a broken page."""
     load_average: float
 
 
@@ -71,9 +91,37 @@ def _answer(pipe: Any) -> Any:
     return pipe.recv()
 
 
-def turn(cell: SoakedCell, url: str, count: int, seconds: float, parts: int) -> Turn:
-    """Measure with so many readers; raises ``RuntimeError`` for a part that is not good."""
-    with readers(url, count) as heard:
+@contextmanager
+def broken(cell: SoakedCell, settings: Path, page: Page) -> Iterator[None]:
+    """The page frozen or gone meanwhile; as it was for any other turn."""
+    process = cell.page.process
+    if page is Page.FROZEN:
+        process.send_signal(signal.SIGSTOP)
+    elif page is Page.KILLED:
+        process.kill()
+        process.wait(GRACE_S)
+    try:
+        yield
+    finally:
+        if page is Page.FROZEN:
+            process.send_signal(signal.SIGCONT)
+        elif page is Page.KILLED:
+            cell.page = cell.own.page(settings)
+            cell.page.ready()
+
+
+def turn(
+    cell: SoakedCell, settings: Path, page: Page, clients: int, *, seconds: float, parts: int
+) -> Turn:
+    """Measure with the page so; raises ``RuntimeError`` for a part that is not good."""
+    count = clients if page is Page.READ else 0
+    url, socket_path = str(cell.page.ready()["url"]), Path(load_settings(settings).socket)
+    with (
+        readers(url, count) as heard,
+        broken(cell, settings, page),
+        followed(socket_path) as ticks,
+        commanded(url if page in (Page.QUIET, Page.READ) else "") as verdicts,
+    ):
         begun_s, used_s = time.monotonic(), _cpu_s(cell.page.process.pid)
         row = measure("guard", "idle", seconds, cell.own.folder)
         times_s = [_part_s(cell) for _ in range(parts)]
@@ -81,11 +129,27 @@ def turn(cell: SoakedCell, url: str, count: int, seconds: float, parts: int) -> 
     (all_of_them,) = heard
     if all_of_them.refused:
         raise RuntimeError(f"not every reader was let in: {all_of_them.refused}")
-    late_ms = np.array(all_of_them.late_s or [np.nan]) * 1e3
-    p50, p99 = np.percentile(late_ms, (50.0, 99.0)).tolist()
+    if verdicts.odd:
+        raise RuntimeError(f"commands had no verdict: {verdicts.odd[:3]}")
+    if ticks.ended:
+        raise RuntimeError(f"the daemon was not followed to the end: {ticks.ended}")
     return Turn(
-        count, row.clean_ms, row.stalled, tuple(times_s), cpu, (p50, p99), os.getloadavg()[0]
+        page,
+        count,
+        row.clean_ms,
+        row.stalled,
+        tuple(times_s),
+        cpu,
+        _middle_and_late_ms(all_of_them.late_s),
+        _middle_and_late_ms(ticks.late_s),
+        _middle_and_late_ms(verdicts.took_s),
+        os.getloadavg()[0],
     )
+
+
+def _middle_and_late_ms(times_s: list[float]) -> tuple[float, float]:
+    p50, p99 = np.percentile(np.array(times_s or [np.nan]) * 1e3, (50.0, 99.0)).tolist()
+    return p50, p99
 
 
 def _part_s(cell: SoakedCell) -> float:
@@ -99,30 +163,33 @@ def _part_s(cell: SoakedCell) -> float:
 
 def _cpu_s(pid: int) -> float:
     # After the name in brackets: user and system time are fields 14 and 15 of proc(5).
-    fields = Path(f"/proc/{pid}/stat").read_text("ascii", "replace").rpartition(")")[2].split()
+    stat = Path(f"/proc/{pid}/stat")
+    if not stat.exists():
+        return 0.0  # it was killed
+    fields = stat.read_text("ascii", "replace").rpartition(")")[2].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def table(turns: list[Turn]) -> Table:
-    """Without and with readers, and the ratio of the medians over the turns."""
-    shown = Table(
-        "figure", "no readers", f"{turns[-1].readers or turns[1].readers} readers", "ratio"
-    )
-    without = [one for one in turns if not one.readers]
-    reading = [one for one in turns if one.readers]
+    """Medians over the turns of each kind; in brackets their ratio to those without readers."""
+    count = max(one.readers for one in turns)
+    shown = Table("figure", *(f"{count} readers" if one is Page.READ else one for one in Page))
 
     def row(name: str, unit: str, of: Any) -> None:
-        first, second = (float(np.median([of(one) for one in ones])) for ones in (without, reading))
-        shown.add_row(name, f"{first:.3g} {unit}", f"{second:.3g} {unit}", f"{second / first:.2f}")
+        found = [float(np.median([of(one) for one in turns if one.page is kind])) for kind in Page]
+        ratios = [""] + [f" ({value / found[0]:.2f})" for value in found[1:]]
+        cells = (f"{value:.3g} {unit}{ratio}" for value, ratio in zip(found, ratios, strict=True))
+        shown.add_row(name, *cells)
 
     for i, name in enumerate(("p50", "p99", "p99.9", "maximum")):
         row(f"guard, {name}", "ms", lambda one, i=i: one.guard_ms[i])
     if turns[0].part_s:
         row("a part", "s", lambda one: np.median(one.part_s))
+    for i, name in enumerate(("p50", "p99")):
+        row(f"tick of the daemon late, {name}", "ms", lambda one, i=i: one.tick_late_ms[i])
+        row(f"snapshot at a reader, {name}", "ms", lambda one, i=i: one.late_ms[i])
+        row(f"command to verdict, {name}", "ms", lambda one, i=i: one.verdict_ms[i])
     row("page, share of a core", "", lambda one: one.page_cpu)
-    late = [one.late_ms for one in reading]
-    p50, p99 = np.median(np.array(late), axis=0)
-    shown.add_row("snapshot at a reader, p50 and p99", "", f"{p50:.1f} and {p99:.1f} ms", "")
     return shown
 
 
@@ -131,7 +198,7 @@ def main(
     clients: Annotated[int, typer.Option(min=1, max=60, help="Readers of the live view.")] = 50,
     seconds: Annotated[float, typer.Option(min=2.0, help="Of the guard, each turn.")] = 60.0,
     parts: Annotated[int, typer.Option(min=0, help="Parts in each turn.")] = 3,
-    turns: Annotated[int, typer.Option(min=1, help="With and without readers.")] = 2,
+    turns: Annotated[int, typer.Option(min=1, help="Of each kind.")] = 2,
     out: Annotated[Path, typer.Option(help="File with every figure.")] = Path(
         "runs/bench-page.json"
     ),
@@ -141,14 +208,13 @@ def main(
     done: list[Turn] = []
     with tempfile.TemporaryDirectory(prefix="bench-page-") as folder:
         settings, _ = write_settings(Path(folder))
-        add_readers(settings, clients)
+        add_readers(settings, max(clients, PROGRAMS * STREAMS_EACH))
         with SoakedCell.start(Path(folder), page_settings=settings) as cell:
-            url = str(cell.page.ready()["url"])
             for number in range(turns):
                 # Not always the same first: what drifts must not look like an effect.
-                for count in (0, clients) if number % 2 == 0 else (clients, 0):
-                    console.print(f"turn {number + 1}: {count} readers …")
-                    done.append(turn(cell, url, count, seconds, parts))
+                for page in list(Page)[:: -1 if number % 2 else 1]:
+                    console.print(f"turn {number + 1}: {page} …")
+                    done.append(turn(cell, settings, page, clients, seconds=seconds, parts=parts))
     out.parent.mkdir(parents=True, exist_ok=True)
     out.write_text(json.dumps([asdict(one) for one in done], indent=2) + "\n", "utf-8")
     console.print(table(done))
