@@ -30,8 +30,10 @@ from cellctl.hmi.routes import (
     recall,
     records,
     session,
+    time_left,
 )
 from cellctl.hmi.routes.exports import RunExporter
+from cellctl.hmi.routes.time_left import UsualTimes
 from cellctl.hmi.settings import LOOPBACK, PageSettings
 from cellctl.hmi.shell import Shell
 from cellctl.hmi.visitors.access import Gatekeeper
@@ -55,6 +57,7 @@ class Parts:
     people: People
     sessions: Sessions
     archive: ArchiveReader
+    usual: UsualTimes
     exporter: RunExporter
     commands: RateLimit
     sign_ins: RateLimit
@@ -63,7 +66,8 @@ class Parts:
 
 ROUTERS = (
     session.router, live.router, line.router, metrics.router, commands.router, alarms.router,
-    records.router, recall.router, exports.router, calibrations.router, procedures.router,
+    records.router, time_left.router, recall.router, exports.router, calibrations.router,
+    procedures.router,
 )  # fmt: skip
 
 
@@ -78,6 +82,7 @@ def routes(settings: PageSettings) -> FastAPI:
     notifier = Notifier(hub, settings.notify)
     people, sessions = People(settings.people, settings.tokens), Sessions(settings.idle_s)
     streams, data_dir = Streams(hub), Path(settings.data_dir)
+    archive = ArchiveReader(data_dir)
     parts = Parts(
         hub=hub,
         link=DaemonLink(Path(settings.socket), hub),
@@ -85,7 +90,8 @@ def routes(settings: PageSettings) -> FastAPI:
         gatekeeper=Gatekeeper(settings, people, sessions),
         people=people,
         sessions=sessions,
-        archive=ArchiveReader(data_dir),
+        archive=archive,
+        usual=UsualTimes(archive),
         exporter=RunExporter(data_dir),
         commands=RateLimit(COMMANDS_A_MINUTE, 60.0),
         sign_ins=RateLimit(SIGN_INS_A_MINUTE, 60.0),

@@ -8,7 +8,10 @@ import { colon, given, label, t } from "./texts.js";
 
 const CURVE_S = 30;
 const curve = [];
+const STORED_MS = 1000;
 let pictures = { run: 0, files: [] };
+let left = { number: null };
+let step = null;
 
 export async function recall() {
   try {
@@ -20,6 +23,29 @@ export async function recall() {
 export function note(snapshot) {
   curve.push([snapshot.mono_s, snapshot.forces.map((force) => force.wrench.find((one) => one.axis === "Fz")?.value ?? null)]);
   while (curve.length && curve[0][0] < snapshot.mono_s - CURVE_S) curve.shift();
+  if (snapshot.step.number === step) return;
+  step = snapshot.step.number;
+  setTimeout(lookForLeft, STORED_MS);  // by then the record knows of the step
+}
+
+// How long the run will still take, by the last good ones; of a step that is over, nothing.
+async function lookForLeft() {
+  const run = cell.snapshot?.run.number;
+  if (!run || !onScreen()) return;
+  try { left = await ask(`runs/${run}/time-left`); } catch { left = { number: null }; }
+}
+
+function minutes(seconds) {
+  const whole = Math.round(seconds);
+  return `${Math.floor(whole / 60)}:${String(whole % 60).padStart(2, "0")}`;
+}
+
+function far(s) {
+  if (s.state !== "EXECUTE" || !left.step || left.number !== s.step.number) return [];
+  const inner = h("i");
+  inner.style.width = `${100 * left.step / left.of}%`;
+  const words = left.longer ? t("left_longer", left.step, left.of) : t("left", left.step, left.of, minutes(left.left_s));
+  return [h("div", { class: "bar", "aria-hidden": "true" }, inner), h("p", { class: "live", id: "left" }, words)];
 }
 
 async function lookForPictures() {
@@ -30,7 +56,8 @@ async function lookForPictures() {
     pictures = { run, files: files.slice(-4).reverse() };
   } catch { /* they come with the next look */ }
 }
-setInterval(() => { if (!document.hidden && location.hash.length < 2 || location.hash === "#run") lookForPictures(); }, 4000);
+const onScreen = () => !document.hidden && (location.hash.length < 2 || location.hash === "#run");
+setInterval(() => { if (onScreen()) { lookForPictures(); lookForLeft(); } }, 4000);
 
 function plot(index, limit) {
   const points = curve.map(([s, values]) => [s, values[index]]);
@@ -59,7 +86,7 @@ function state(s) {
   const mark = s.state.startsWith("ABORT") ? "■ " : waiting ? "● " : "";
   const run = s.run.number ? t("run_line", s.run.number, s.run.serial || "—", t(`result_${s.run.result}`)) : t("no_run");
   return [h("div", { class: `state live${colour}`, id: "state", "data-state": s.state }, mark + word + to),
-    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, label(s.step.label), s.pass || "—") : t("no_step")),
+    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, label(s.step.label), s.pass || "—") : t("no_step")), ...far(s),
     h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, label(s.step.text)) : null,
     h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
     ...s.forces.filter((one) => one.presses_n).map((one) => h("p", { class: "bad pressing" }, `■ ${t("presses", shown(one.presses_n, 1), one.sensor)}`)),
