@@ -61,6 +61,8 @@ class DiskWatch:
 
     async def _ask(self) -> None:
         await self._store.look_for_room()
+        # A run may have ended while the disk was full. Its end is written as soon as there is room,
+        # and not only when the daemon is started again.
         await self._store.keep_ends()
 
     async def _fail(self, run: int, fault: CellError) -> None:

@@ -33,6 +33,7 @@ class ContactRecorder:
         self._since_s = 0.0
 
     async def __aenter__(self) -> Self:
+        # The clock of the loop is the one that stamps samples, also in a loop of simulated time.
         self._since_s = asyncio.get_running_loop().time()
         self._take_travel()
         self._task = asyncio.create_task(self._run(), name="contact-recorder")

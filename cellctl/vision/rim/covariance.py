@@ -10,15 +10,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim.noise import BRIGHT, DARK
 from cellctl.vision.rim.problem import RimProblem
 from cellctl.vision.rim.shape import RimShape
 from cellctl.vision.rim.solver import RimFit
 
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""
-_BRIGHT, _DARK = 0.95, 0.05
-"""Shares outside the rim from which on a pixel belongs to one side."""
-
 _BINS, _REACH = 36, 6
 """Sectors of azimuth, and over how many of them errors may hang together."""
 _LOST = 1.4
@@ -95,7 +93,7 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
 
 def _model_covariance(problem: RimProblem, grey: Array, outside: Array, contrast: float) -> Array:
     """Covariance of the error of the light model, which grows with how uneven the light is."""
-    sides = (grey[outside > _BRIGHT], grey[outside < _DARK])
+    sides = (grey[outside > BRIGHT], grey[outside < DARK])
     variances = [float(np.var(side)) if len(side) else 0.0 for side in sides]
     uneven = float(np.sqrt(sum(variances))) / max(abs(contrast), 1.0)
     share_px = _CONE_MODEL_PX if problem.light.cone else _WALL_MODEL_PX

@@ -22,7 +22,7 @@ _HUBER = 2.5
 """Residuals beyond so many standard deviations lose weight (Huber): scratches, reflexes, dust."""
 _LEAST_GREY = 0.35
 """Rounding to 8 bit alone leaves about this much."""
-_BRIGHT, _DARK = 0.95, 0.05
+BRIGHT, DARK = 0.95, 0.05
 """Shares outside the rim from which on a pixel belongs to one side."""
 _CLIP_SIGMAS = 4.0
 """Residuals are clipped here before strokes are told from pixels: a scratch is no stroke."""
@@ -96,7 +96,7 @@ def noise_of(residuals: Array, outside: Array, strokes: csr_array) -> PixelNoise
     The noise on the bright side (shot noise, texture) differs from that on the dark side; between
     them its variance goes with ``outside``, the share of each pixel that the bright side covers.
     """
-    bright, dark = outside > _BRIGHT, _sigma_grey(residuals[outside < _DARK])
+    bright, dark = outside > BRIGHT, _sigma_grey(residuals[outside < DARK])
     own, height = _sigma_grey(residuals[bright]), 0.0
     if strokes.shape[0]:
         own, height = _own_and_strokes(residuals[bright], strokes[:, bright])

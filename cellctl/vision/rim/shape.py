@@ -3,8 +3,8 @@
 Up to four surfaces meet at a hole: the plate, the ring of a chamfer, the visible part of the wall,
 and the dark inside. Their borders are circles in coordinates of the rim's plane: the outer edge of
 the ring, the rim, and the lower edge of the wall. The lower edge lies h below a plane at distance D
-and is therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One Gaussian blurs
-all of them.
+and is therefore the rim scaled by 1/(1 + h/D) towards the foot of the camera. One blur lies over
+all of them: a Gaussian, unless the image has moved or is out of focus (``spread``).
 
 Arrays hold one pixel a column, because this is the inner loop of every measurement: rows are then
 contiguous in memory.

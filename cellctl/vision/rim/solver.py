@@ -164,6 +164,7 @@ def _minimised(
         if change_px < tolerance_px and not weighing:
             return RimFit(problem, best, converged=True)
         best = relinearised(problem, best, weigh=weighing)
+    # A fit that creeps has nearly settled: four times the finer tolerance is 0.006 px.
     return RimFit(problem, best, change_px < 4.0 * tolerance_px)
 
 
