@@ -1,6 +1,7 @@
 """One TCP connection to the service: calls out, replies back in the same order."""
 
 import asyncio
+import contextlib
 import socket
 from collections import deque
 from collections.abc import Callable
@@ -29,6 +30,7 @@ class RpcConnection(asyncio.Protocol):
         self._reader = MessageReader()
         self._waiting: deque[tuple[str, asyncio.Future[Value]]] = deque()
         self._transport: asyncio.Transport | None = None
+        self._news = asyncio.Event()
 
     def __str__(self) -> str:
         return self._label
@@ -74,6 +76,17 @@ class RpcConnection(asyncio.Protocol):
             self.drop(fault)
             raise fault from None
 
+    def owes(self, methods: frozenset[str]) -> bool:
+        """Whether a call of one of these was not answered yet, also one that was given up."""
+        return any(method in methods for method, _ in self._waiting)
+
+    async def next_reply(self, timeout_s: float) -> None:
+        """Wait for the next reply, or for the end of the connection, but no longer than that."""
+        self._news.clear()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(timeout_s):
+                await self._news.wait()
+
     # -- called by the event loop ---------------------------------------------------------------
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """The connection stands."""
@@ -101,6 +114,7 @@ class RpcConnection(asyncio.Protocol):
         if not self._waiting:
             raise ProtocolViolation("a reply that nobody asked for")
         method, future = self._waiting.popleft()
+        self._news.set()
         try:
             value = protocol.reply(method, message)
         except MethodUnknown as unknown:
@@ -117,6 +131,7 @@ class RpcConnection(asyncio.Protocol):
         """True when there was a connection."""
         transport, self._transport = self._transport, None
         waiting, self._waiting = self._waiting, deque()
+        self._news.set()
         for _, future in waiting:
             _settle(future, fault)
         if transport is None:

@@ -195,9 +195,9 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
             async with asyncio.timeout(self._config.stop_timeout_s):
                 await self._link.stop_until_standing()
         except (TimeoutError, LinkError) as error:
-            words = error.detail if isinstance(error, LinkError) else "no standstill"
-            timeout_s = self._config.stop_timeout_s
-            self._latch = StopFailed(f"{self.name}: {words} within {timeout_s:g} s")
+            late = "it has not answered a move" if self._link.owes_move else "no standstill"
+            words = error.detail if isinstance(error, LinkError) else late
+            self._latch = StopFailed(f"{self.name}: {words} in {self._config.stop_timeout_s:g} s")
             self._close()
             raise self._latch from error
 

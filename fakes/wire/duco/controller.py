@@ -125,6 +125,8 @@ class DucoController:
 
     async def _motion(self, name: str, of: Fields) -> bytes:
         logic, blocking = self.logic, False
+        if name != "stop" and (late := logic.faults.use("motion_late")):
+            await asyncio.sleep(late.number("delay_s", 0.5))
         if name == "stop":
             number, blocking = logic.stop(), of[1]
         elif name == "movej":

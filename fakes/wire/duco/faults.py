@@ -7,6 +7,7 @@ DUCO_FAULTS = {
     "cut": "every connection is closed, and none is accepted until the fault is cleared",
     "stop_ignored": "a stop is answered and not carried out",
     "motion_silent": "a call that moves the arm is carried out, and its connection hangs",
+    "motion_late": "a call that moves the arm is taken `delay_s` late, after a stop meanwhile",
     "minus_one": "a call that moves the arm is answered with -1",
     "task_end": "the task of the next motion ends with `state` instead of moving",
     "servo_lost": "a streamed setpoint is answered and not carried out",

@@ -246,6 +246,38 @@ async def test_a_stop_that_is_ignored_ends_all_signs_of_life() -> None:
         await stands(rig)
 
 
+@pytest.mark.parametrize("cancelled", [True, False])
+async def test_nothing_moves_after_a_stop_that_has_overtaken_a_move(*, cancelled: bool) -> None:
+    """Both go over connections of their own, and the controller has no latch."""
+    async with duco_rig() as rig:
+        await rig.robot.connect()
+        rig.logic.faults.inject("motion_late", count=1, delay_s=0.2)
+        moving = move(rig, 80.0)
+        await asyncio.wait({moving}, timeout=0.05)
+        if cancelled:
+            moving.cancel()
+        await rig.robot.stop()
+        confirmed = rig.robot.state().base_T_flange
+        with pytest.raises((CellError, asyncio.CancelledError)):
+            await moving
+        await asyncio.sleep(0.3)
+        assert rig.logic.motions == 1, "the controller has taken it"
+        travelled_m, _ = rig.robot.state().distance_to(confirmed)
+        assert travelled_m < 1e-5
+
+
+async def test_a_stop_is_not_confirmed_while_a_move_is_on_its_way() -> None:
+    async with duco_rig(stop_timeout_s=0.4) as rig:
+        await rig.robot.connect()
+        rig.logic.faults.inject("motion_late", count=1, delay_s=2.0)
+        moving = move(rig, 80.0)
+        await asyncio.wait({moving}, timeout=0.05)
+        with pytest.raises(StopFailed, match="has not answered a move"):
+            await rig.robot.stop()
+        with pytest.raises(CellError):
+            await moving
+
+
 async def test_a_motion_without_an_end_is_stopped() -> None:
     async with duco_rig(move_timeout_s=0.2) as rig:
         await rig.robot.connect()

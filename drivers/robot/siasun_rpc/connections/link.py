@@ -17,6 +17,9 @@ from drivers.robot.siasun_rpc.protocol import request
 from drivers.robot.siasun_rpc.watch import StateWatch
 
 STOP = request("stop", False)  # noqa: FBT003 - "block": the reply is not to wait for standstill
+_MOVES = frozenset({"movej", "movel"})
+"""Calls that lead far. A setpoint of a stream leads no farther than one step, and is not waited
+for: a controller that answers none has the stream stopped."""
 VERSION = request("get_robot_version")
 BEATS_PER_DEADMAN = 4
 """Heartbeats in the time after which the controller stops the arm: two in a row may be late."""
@@ -133,9 +136,18 @@ class RpcLink:
         self._hang_up()
 
     async def stop_until_standing(self) -> None:
-        """Ask the arm to stop until it is reported to stand. The caller limits the time."""
+        """Ask the arm to stop until it is reported to stand. The caller limits the time.
+
+        The controller has no latch, and a stop may overtake a move, which goes over a connection of
+        its own: what was not answered before the stop may begin after it. So only a stop that comes
+        after the answer to every move counts.
+        """
         while True:
+            overtaken = self.owes_move
             await self.control.exchange(STOP, timeout_s=self._config.reply_timeout_s)
+            if overtaken:
+                await self.motion.next_reply(REPEAT_STOP_S)
+                continue
             standing = asyncio.ensure_future(self.watch.stands(self._config.stop_timeout_s))
             try:
                 await asyncio.wait({standing}, timeout=REPEAT_STOP_S)
@@ -143,6 +155,11 @@ class RpcLink:
                     return standing.result()
             finally:
                 standing.cancel()
+
+    @property
+    def owes_move(self) -> bool:
+        """The controller has not answered a move yet: nobody knows whether it will begin."""
+        return self.motion.owes(_MOVES)
 
     async def _reopen(self) -> None:
         """Try until the controller is back. The arm is stopped before anything else: nobody has
