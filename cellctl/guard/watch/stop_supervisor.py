@@ -12,6 +12,10 @@ _RETRY_S = 0.5
 """Pause between attempts to connect: long enough not to flood a controller that is starting up. Its
 exact value does not matter, because a guard without its channel cannot be armed."""
 
+STAND_S = 2.0
+"""A robot that has latched a stop and reports for so long that it still moves is not stopping: arms
+come to rest within a second."""
+
 
 class StopSupervisor:
     """Repeats a wanted stop until it is confirmed, and tells the robot that the guard lives.
@@ -20,7 +24,9 @@ class StopSupervisor:
     connection, and a robot program can ignore it. So the request is repeated at every beat until
     the robot reports that it has latched the stop. A robot that has not done so after
     ``confirm_s`` gets no more heartbeats: its dead man is the second way to stop it, and does not
-    depend on the part of its program that has just failed.
+    depend on the part of its program that has just failed. Neither does one that has latched it and
+    was not seen standing ``STAND_S`` after it was asked, and that is asked again. A robot that has
+    stood and moves later under its latch is one that somebody jogs at its panel.
 
     No method blocks. Connecting can take seconds, in which samples still have to be judged, so a
     thread connects and then hands the open channel over; the two never use it at the same time.
@@ -35,7 +41,9 @@ class StopSupervisor:
         self._confirm_s = confirm_s
         self._wanted_s: float | None = None
         """Time since when a stop is wanted; None while none is."""
-        self._confirmed = False
+        self._latched = self._stood = False
+        """What the robot has reported since the stop is wanted: whether it is latched now, and
+        whether it has stood with it at any time."""
         self._opener: threading.Thread | None = None
         self._retry_s = 0.0
         """Monotonic time before which no new attempt to connect begins."""
@@ -100,14 +108,15 @@ class StopSupervisor:
         # Not "confirmed once": a robot that releases its latch while the stop is still wanted,
         # for instance from its own panel, is asked again.
         if state is not None and self._wanted_s is not None:
-            self._confirmed = state.stop_latched
+            self._latched = state.stop_latched
+            self._stood = self._stood or (state.stop_latched and not state.moving)
         return state
 
     def stop(self, now_s: float) -> None:
         """Want a stop from now on; the first request leaves at once."""
         first = self._wanted_s is None
         if first:
-            self._wanted_s, self._confirmed = now_s, False
+            self._wanted_s, self._latched, self._stood = now_s, False, False
         self._request(now_s, first=first)
 
     def release(self) -> None:
@@ -117,10 +126,12 @@ class StopSupervisor:
     def beat(self, now_s: float) -> None:
         """Repeat a stop that is not confirmed; beat unless that has taken too long."""
         wanted_s = self._wanted_s
-        if wanted_s is not None and not self._confirmed:
-            self._request(now_s, first=False)
+        if wanted_s is not None and not (self._latched and self._stood):
+            late = now_s - wanted_s > (STAND_S if self._latched else self._confirm_s)
+            if late or not self._latched:
+                self._request(now_s, first=False)
             # No heartbeat any more: the robot's dead man stops what does not obey the request.
-            if now_s - wanted_s > self._confirm_s:
+            if late:
                 return
         if self._channel is not None and self.up:
             try:

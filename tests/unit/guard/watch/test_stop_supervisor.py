@@ -6,7 +6,7 @@ import pytest
 
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.link import ConnectTimeout, LinkLost
-from cellctl.guard.watch.stop_supervisor import StopSupervisor
+from cellctl.guard.watch.stop_supervisor import STAND_S, StopSupervisor
 from cellctl.interfaces.stop_channel import FlangeState, StopChannel
 from tests.unit.guard.watch.samples import flange
 
@@ -125,6 +125,32 @@ def test_a_stop_that_is_ignored_ends_the_beats() -> None:
         supervisor.beat(1.0 + k * 0.02)
     assert channel.stops == 20
     assert channel.beats == pytest.approx(5, abs=1)
+
+
+def test_a_robot_that_has_latched_a_stop_and_moves_on_gets_no_more_beats() -> None:
+    """It was taken for one that stands, and its dead man was fed for ever."""
+    channel = Channel()
+    supervisor = opened(channel)
+    supervisor.stop(1.0)
+    for k in range(1, 300):
+        time_s = 1.0 + k * 0.02
+        channel.state = flange(time_s)._replace(stop_latched=True, moving=True)
+        supervisor.poll(time_s)
+        supervisor.beat(time_s)
+    assert channel.beats == pytest.approx(STAND_S / 0.02, abs=1), "while it may still be braking"
+    assert channel.stops == pytest.approx(1 + 299 - STAND_S / 0.02, abs=2)
+
+
+def test_an_arm_that_has_stood_may_be_jogged_under_its_latch() -> None:
+    channel = Channel()
+    supervisor = opened(channel)
+    supervisor.stop(1.0)
+    for k in range(1, 300):
+        time_s = 1.0 + k * 0.02
+        channel.state = flange(time_s)._replace(stop_latched=True, moving=k != 20)
+        supervisor.poll(time_s)
+        supervisor.beat(time_s)
+    assert (channel.beats, channel.stops) == (299, 1)
 
 
 def test_a_latch_that_somebody_released_behind_the_guard_s_back_is_stopped_again() -> None:
