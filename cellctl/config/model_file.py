@@ -63,6 +63,8 @@ class StatedModel:
     fixtures: tuple[ModelBox, ...] = ()
     at_flange: Mapping[str, tuple[ModelBox, ...]] = field(default_factory=dict)
     """What each robot carries at its flange."""
+    boxes_alone: bool = False
+    """Whether all fixtures are boxes: then ``fixtures`` has everything that stands in the cell."""
 
 
 def model_path(cell_file: Path) -> Path:
@@ -85,7 +87,9 @@ def stated_model(model: Path) -> StatedModel:
         for name, arm in read.robots.items()
     }
     bases = {name: arm.cell_T_base for name, arm in read.robots.items()}
-    return StatedModel(model.name, bases, _boxes("fixtures", read.fixtures), at_flange)
+    fixtures = _boxes("fixtures", read.fixtures)
+    boxes_alone = len(fixtures) == len(read.fixtures)
+    return StatedModel(model.name, bases, fixtures, at_flange, boxes_alone)
 
 
 def _boxes(where: str, bodies: Mapping[str, _Body]) -> tuple[ModelBox, ...]:

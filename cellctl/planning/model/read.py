@@ -3,6 +3,7 @@
 import math
 import tomllib
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
@@ -11,6 +12,8 @@ from pydantic import ValidationError
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config.cell import CellConfig
+from cellctl.config.document.findings import model_issues, validated
+from cellctl.config.document.lines import key_lines, line_of
 from cellctl.errors.config import (
     ArmNotDescribed,
     ConfigInvalid,
@@ -44,6 +47,8 @@ _SLENDER = 100.0
 of real ones the radius is half a metre at most, and neither hoses nor needles are so thin."""
 _FLATTEST_MM = 0.5
 """No sheet or pane is thinner; a body of half a metre, written in metres, is."""
+_FASTEST_RAD_S = 2.0 * math.pi
+"""No joint of an arm turns faster, and the fastest one of none needs a minute for a turn."""
 _BASES_APART_M = 0.05
 """No two arms stand nearer to each other, base to base."""
 
@@ -67,7 +72,8 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
 
 def _document(path: Path) -> ModelDocument:
     try:
-        raw = tomllib.loads(read_hand_written(path))
+        text = read_hand_written(path)
+        raw = tomllib.loads(text)
     except FileNotFoundError as error:
         raise ConfigUnreadable(
             f"{path}: this cell has no model yet. Write one: where its arms stand, their bodies "
@@ -77,13 +83,14 @@ def _document(path: Path) -> ModelDocument:
     except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
     try:
-        return ModelDocument.model_validate(raw)
+        return validated(ModelDocument, raw)
     except ValidationError as error:
-        lines = [
-            f"{'.'.join(str(part) for part in item['loc'])}: {item['msg']}"
-            for item in error.errors(include_url=False)
+        lines = key_lines(text)
+        found = [
+            str(replace(issue, line=line_of(issue.key, lines)))
+            for issue in model_issues("", error, ModelDocument, raw)
         ]
-        raise ConfigInvalid(f"{path}: " + "; ".join(lines)) from error
+        raise ConfigInvalid(f"{path}: {'; '.join(found)}") from error
 
 
 def _arm(cell: CellConfig, document: ModelDocument, name: str) -> PlannedArm:
@@ -91,6 +98,11 @@ def _arm(cell: CellConfig, document: ModelDocument, name: str) -> PlannedArm:
         known = ", ".join(cell.robots) or "none"
         raise ArmNotDescribed(f"robots.{name}: not a robot of the cell file, which has {known}")
     keys = document.robots[name]
+    if max(keys.rated_deg_s) <= _FASTEST_RAD_S:
+        raise SizeImplausible(
+            f"robots.{name}.rated_deg_s = {list(keys.rated_deg_s)}: degrees per second belong "
+            "here; these look like radians"
+        )
     return planned_arm(
         name,
         cell.robots[name],

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.model_file import StatedModel
 from cellctl.config.recipe import Recipe, first_of_each
 from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.antenna_module.faults.connector import ContactBent, ContactMissing
@@ -84,6 +85,17 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         from cellctl.processes.antenna_module.checks.plausible import plausible_issues
 
         return plausible_issues(cell, cast(AntennaRecipe, recipe), key, folder)
+
+    @classmethod
+    def check_model(
+        cls, cell: CellConfig, recipe: Recipe, key: str, model: StatedModel
+    ) -> Iterable[ConfigIssue]:
+        """Whether bodies have tray, socket and reference plate."""
+        from cellctl.processes.antenna_module.checks.modelled_stations import (
+            modelled_station_issues,
+        )
+
+        return modelled_station_issues(cell, cast(AntennaRecipe, recipe), key, model)
 
     @classmethod
     def remarks(

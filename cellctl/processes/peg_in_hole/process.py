@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.issue import ConfigIssue
+from cellctl.config.model_file import StatedModel
 from cellctl.config.recipe import Recipe, first_of_each
 from cellctl.config.stated.moves import StatedMove
 from cellctl.processes.peg_in_hole.faults import (
@@ -73,6 +74,19 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         from cellctl.processes.peg_in_hole.plausible.findings import plausible_issues
 
         return plausible_issues(cell, cast(PegRecipe, recipe), key, folder)
+
+    @classmethod
+    def check_model(
+        cls,
+        cell: CellConfig,  # noqa: ARG003
+        recipe: Recipe,
+        key: str,
+        model: StatedModel,
+    ) -> Iterable[ConfigIssue]:
+        """Whether a body has the hole."""
+        from cellctl.processes.peg_in_hole.plausible.modelled_hole import modelled_hole_issues
+
+        return modelled_hole_issues(cast(PegRecipe, recipe), key, model)
 
     @classmethod
     def remarks(

@@ -29,6 +29,7 @@ from cellctl.processes.antenna_module.checks.figures import (
     stored_cameras,
 )
 from cellctl.processes.antenna_module.checks.looks import OVER, look_issues
+from cellctl.processes.antenna_module.checks.marks_unit import marks_unit_issues
 from cellctl.processes.antenna_module.connector.connector import Connector
 from cellctl.processes.antenna_module.drawings import read_drawings
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
@@ -48,6 +49,7 @@ def plausible_issues(
     settings = _settings(cell, recipe)
     where = f"processes.{recipe.process}"
     yield from one_file_twice(recipe, key, settings.reference, where)
+    yield from marks_unit_issues(recipe, key, settings.reference, where, folder)
     yield from force_issues(cell, recipe, key, folder)
     yield from pull_issues(cell, recipe, key)
     # Read once: no other value of a figure, of which hundreds are tried, names other files.

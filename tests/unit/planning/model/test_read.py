@@ -147,3 +147,31 @@ def test_any_bytes_are_refused_with_a_number(content: bytes) -> None:
         path.write_bytes(content)
         with pytest.raises(CellError):
             read_model(CELL, path, DECK.parent)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        (
+            "radius_mm = 350.0",
+            "radus_mm = 350.0",
+            r"line \d+: robots\.main\.bodies\.pedestal\.capsule\.radus_mm = 350\.0: no such key; "
+            "did you mean 'radius_mm'",
+        ),
+        ("link = 0", "link = 7", r"line \d+: robots\.main\.bodies\.pedestal\.link = 7: 0 to 6"),
+        ("margin_mm = 20.0", 'margin_mm = "20"', "a number, without quotes"),
+    ],
+)
+def test_a_wrong_key_is_told_as_one_of_a_cell_file(
+    tmp_path: Path, old: str, new: str, said: str
+) -> None:
+    with pytest.raises(ConfigInvalid, match=said):
+        read_model(CELL, write_model(tmp_path, old, new), DECK.parent)
+
+
+def test_rated_speeds_in_radians_are_refused(tmp_path: Path) -> None:
+    """They count in the times that ways are chosen by."""
+    degrees = "rated_deg_s = [80.0, 75.0, 70.0, 70.0, 70.0, 110.0]"
+    path = write_model(tmp_path, degrees, "rated_deg_s = [1.4, 1.3, 1.2, 1.2, 1.2, 1.9]")
+    with pytest.raises(SizeImplausible, match="degrees per second belong here"):
+        read_model(CELL, path, DECK.parent)

@@ -1,5 +1,6 @@
 """Sizes in the drawings of the antenna cell that are half or twice what they should be."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from shutil import copytree
@@ -90,3 +91,23 @@ def test_dots_that_lie_elsewhere_or_are_called_otherwise_from_below(
 
 def test_the_shipped_drawings_are_those_of_the_shipped_calibrations(tmp_path: Path) -> None:
     assert remarks(tmp_path, []) == {}
+
+
+@pytest.mark.parametrize("per_mm", [1e-3, 1 / 25.4])
+@pytest.mark.parametrize(
+    ("name", "key"),
+    [("module-top", "recipes.0.module_top"), (ABOVE, f"{REFERENCE}.plate_above")],
+)
+def test_marks_in_metres_or_inches_are_refused(
+    tmp_path: Path, name: str, key: str, per_mm: float
+) -> None:
+    copytree(CONFIG / "connectors", tmp_path / "connectors")
+    path = tmp_path / "connectors" / f"{name}.toml"
+    text = path.read_text(encoding="utf-8")
+    other = re.sub(r"-?\d+\.\d+", lambda found: f"{float(found[0]) * per_mm:.6f}", text)
+    path.write_text(other, encoding="utf-8")
+    (tmp_path / "antenna.toml").write_text((CONFIG / "antenna.toml").read_text(encoding="utf-8"))
+    (tmp_path / "antenna-calibration").mkdir()
+    (issue,) = examine_before_commissioning(tmp_path / "antenna.toml").errors
+    assert issue.key == key
+    assert "in metres or inches" in issue.allowed
