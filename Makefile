@@ -70,7 +70,7 @@ campaign-tornado: venv
 
 # Takes an hour and more; interrupted, it goes on where it was.
 campaign-decks: venv
-	$(BIN)/python -m benchmarks.decks
+	$(BIN)/python -m benchmarks.decks.campaign
 
 # Takes half an hour; QUICK=1 draws few cells and insertions, in a few minutes each.
 campaign-antenna: venv

@@ -7,6 +7,9 @@ from benchmarks.tornado.outcome import Verdict
 from fakes.imperfections import CATALOGUE
 
 
+_DECIMALS = {"lateral_mm": 3, "rotation_deg": 4, "peak_n": 1}
+
+
 def markdown(found: Sequence[Cost]) -> str:
     """One line for each imperfection and size."""
     titles = [f"{title} more" for _, title, _ in FIGURES]
@@ -17,10 +20,15 @@ def markdown(found: Sequence[Cost]) -> str:
 
 
 def _cells(cost: Cost) -> list[str]:
-    more = ["–" if (value := cost.more[key]) is None else f"{value:+.4g}" for key, _, _ in FIGURES]
+    more = [_more(cost.more[key], _DECIMALS[key]) for key, _, _ in FIGURES]
     counts = [str(cost.count(verdict)) for verdict in Verdict]
     looks = "–" if cost.iterations is None else str(cost.iterations)
     return [cost.imperfection, _size(cost), cost.place, *more, looks, *counts]
+
+
+def _more(value: float | None, decimals: int) -> str:
+    # Adding zero makes 0.0 of the -0.0 that rounding leaves of a small negative value.
+    return "–" if value is None else f"{round(value, decimals) + 0.0:+.{decimals}f}"
 
 
 def _size(cost: Cost) -> str:

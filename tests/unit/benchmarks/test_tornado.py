@@ -94,7 +94,7 @@ def test_a_part_that_was_never_seated_costs_no_offset(tmp_path: Path) -> None:
     assert [cost.imperfection for cost in found] == ["burr", "grip_slip"]
     assert found[1].more["lateral_mm"] is None
     lines = markdown(found).splitlines()
-    assert lines[2].startswith("| burr | 1 × = 0.02 mm | cell | +0.38 |")
+    assert lines[2].startswith("| burr | 1 × = 0.02 mm | cell | +0.380 | +0.0000 | +0.0 |")
     assert lines[3].endswith("| 2 | 0 | 1 | 0 |")
     draw(found, tmp_path / "tornado.png")
     assert (tmp_path / "tornado.png").stat().st_size > 10_000

@@ -1,12 +1,13 @@
-"""The campaign: `python -m benchmarks.decks`.
+"""The campaign: `python -m benchmarks.decks.campaign`.
 
 Exit codes: 0 no deck was called good that is not, 1 one was, 130 interrupted.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
+from fnmatch import fnmatch
 from itertools import product
 from multiprocessing import get_context
 from pathlib import Path
@@ -27,6 +28,10 @@ def campaign(
     n: Annotated[int, typer.Option("-n", min=1, help="Seeds of every deck.")] = 3,
     out: Annotated[Path, typer.Option(help="Folder for figures and table.")] = Path("runs/decks"),
     workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
+    only: Annotated[
+        list[str] | None,
+        typer.Option(help="Decks, as 10kg-1x1m-150mm, with * as in file names; may repeat."),
+    ] = None,
 ) -> None:
     """Assemble every deck of the range; what was run before in the same folder is not run again."""
     console = Console(highlight=False, soft_wrap=True)
@@ -36,8 +41,7 @@ def campaign(
         json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     )
     decks = tuple(
-        replace(deck, legs_mm=legs)
-        for deck, legs in product(DECKS, (SHIPPED_LEGS_MM, LARGE_LEGS_MM))
+        deck for deck in _all_decks() if any(fnmatch(deck.key, one) for one in only or ("*",))
     )
     waiting = [
         (deck, seed)
@@ -63,6 +67,11 @@ def campaign(
     console.print(text)
     false = any(row["outcome"] == Outcome.FALSE for row in rows.values())
     raise typer.Exit(code or int(false))
+
+
+def _all_decks() -> Iterator[Deck]:
+    for deck, legs in product(DECKS, (SHIPPED_LEGS_MM, LARGE_LEGS_MM)):
+        yield replace(deck, legs_mm=legs)
 
 
 def _one_thread() -> None:
