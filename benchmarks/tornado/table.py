@@ -6,7 +6,6 @@ from benchmarks.tornado.costs import FIGURES, Cost
 from benchmarks.tornado.outcome import Verdict
 from fakes.imperfections import CATALOGUE
 
-
 _DECIMALS = {"lateral_mm": 3, "rotation_deg": 4, "peak_n": 1}
 
 
