@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from cellctl.errors.records import StoreUnavailable
+from cellctl.records.database.missing_store import missing_store
 from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
 from cellctl.records.entered.gauges import GAUGE_HOLES, beyond_limit, hole_limits
@@ -45,7 +46,7 @@ def listed_runs(folder: Path, limit: int, wanted: RunFilter = ALL) -> list[Liste
     file = folder / FILE
     # SQLite would make an empty one.
     if not file.exists():
-        raise StoreUnavailable(f"there is no {file}")
+        raise missing_store(file)
     found = _read(file, limit, wanted)
     if found is None:
         from cellctl.records.store import RunStore

@@ -25,6 +25,7 @@ from cellctl.errors.records import (
 from cellctl.files.atomic_files import make_folder_durably
 from cellctl.records.database import migration
 from cellctl.records.database.claimed_version import require_own_parts
+from cellctl.records.database.missing_store import missing_store
 from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 
@@ -54,7 +55,7 @@ class Database:
         self._failed: str | None = None
         self._file = file
         if not (create or file.exists()):
-            raise StoreUnavailable(f"there is no {file}")
+            raise missing_store(file)
         self._access = ReadAccess(file)
         self._engine = _engine(file, self._access, lock_wait_s)
         try:
