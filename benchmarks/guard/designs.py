@@ -6,8 +6,10 @@ threads: the straightforward way to write such a controller (docs/decisions/0003
 
 import asyncio
 import multiprocessing
+import os
 import threading
 from multiprocessing.connection import Connection
+from pathlib import Path
 from typing import Any
 
 from benchmarks.guard import loads
@@ -28,6 +30,7 @@ from drivers.robot.siasun.codec.records import Status
 from drivers.robot.siasun.stop_channel import flange_state
 
 GUARD_MODULE = "benchmarks.guard.child"
+ROOT = Path(__file__).parents[2]
 RATE_HZ = 1000
 SESSION = 1
 HOUSEKEEPING_S = 0.01
@@ -51,6 +54,14 @@ def loads_of(kind: str) -> tuple[int, list[Any]]:
     return (0 if kind == "idle" else 2), own
 
 
+def show_benchmarks_to_programs() -> None:
+    """Have the programs that this process starts find the benchmarks.
+
+    A guard takes its modules from the installation alone, and these belong to none.
+    """
+    os.environ["PYTHONPATH"] = str(ROOT)
+
+
 def guard_process(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
     """The daemon with its guard; its vision workers are processes, as in the product."""
     asyncio.run(_guard_process(pipe, sensor_port, guard_port, load))
@@ -63,6 +74,7 @@ def plain(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> Non
 
 async def _guard_process(pipe: Connection, sensor_port: int, guard_port: int, load: str) -> None:
     log.configure(level=log.LogLevel.ERROR)  # each of the thousand trips a second is a warning
+    show_benchmarks_to_programs()
     tcp = {"transport": "tcp", "host": "127.0.0.1", "port": sensor_port, "rate_hz": RATE_HZ}
     sjl_grd = {"robot_name": "SR500A", "guard_port": guard_port}
     settings = GuardSettings()
