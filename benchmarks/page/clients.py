@@ -8,6 +8,7 @@ that others share only the ratios say something, and these only over many turns.
 """
 
 import json
+import math
 import multiprocessing
 import os
 import signal
@@ -170,16 +171,21 @@ def _cpu_s(pid: int) -> float:
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
+def _cell(value: float, unit: str, without: float) -> str:
+    if math.isnan(value):
+        return "—"  # nobody was there to measure it
+    ratio = "" if math.isnan(without) or not without else f" ({value / without:.2f})"
+    return f"{value:.3g} {unit}".rstrip() + ratio
+
+
 def table(turns: list[Turn]) -> Table:
-    """Medians over the turns of each kind; in brackets their ratio to those without readers."""
+    """Medians over the turns of each kind; in brackets their ratio to those of no readers."""
     count = max(one.readers for one in turns)
     shown = Table("figure", *(f"{count} readers" if one is Page.READ else one for one in Page))
 
     def row(name: str, unit: str, of: Any) -> None:
         found = [float(np.median([of(one) for one in turns if one.page is kind])) for kind in Page]
-        ratios = [""] + [f" ({value / found[0]:.2f})" for value in found[1:]]
-        cells = (f"{value:.3g} {unit}{ratio}" for value, ratio in zip(found, ratios, strict=True))
-        shown.add_row(name, *cells)
+        shown.add_row(name, *(_cell(value, unit, found[0]) for value in found))
 
     for i, name in enumerate(("p50", "p99", "p99.9", "maximum")):
         row(f"guard, {name}", "ms", lambda one, i=i: one.guard_ms[i])
