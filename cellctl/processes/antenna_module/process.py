@@ -111,6 +111,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         from cellctl.processes.antenna_module.checks.drawn import (
             capture_remarks,
             holding_remarks,
+            outline_remarks,
             pitch_remarks,
         )
         from cellctl.processes.antenna_module.checks.figures import board_remarks
@@ -129,6 +130,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         yield from capture_remarks(plugged, key, folder)
         yield from holding_remarks(plugged, key, folder)
         yield from pitch_remarks(plugged, key, folder)
+        yield from outline_remarks(plugged, key, folder)
         yield from taught_drawing_remarks(cell, plugged, key, folder)
         if settings.reference is not None:
             where = f"processes.{recipe.process}"

@@ -24,8 +24,10 @@ def calibration_folder_issues(cell: CellConfig, folder: Path) -> Iterator[Config
     calibrations is that of a cell which is still to be calibrated.
     """
     known = _known(cell)
-    if not cell.calibration_dir.strip() or not all(known.values()):
+    if not cell.calibration_dir.strip() or not known or not all(known.values()):
         return  # a process of another package need not say what it stores
+    if any(recipe.process not in known for recipe in cell.recipes):
+        return  # its section is wrong itself, and what it stores is not known without
     names = [name for of_process in known.values() for name in of_process]
     place = folder / cell.calibration_dir
     stored = _stored(place)

@@ -1,7 +1,7 @@
 """Holds limits of a recipe against its drawings, and the drawings against each other."""
 
 from collections.abc import Iterator
-from math import atan2, degrees, isclose
+from math import atan2, degrees, hypot, isclose
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +32,10 @@ _PITCHES = (1.6, 4.5)
 """Distance of neighbouring contacts over the diameter of a pin. Micro-Ds (MIL-DTL-83513) have 2.5,
 nano-Ds (MIL-DTL-32139) 2.1, D-subs (DIN 41652) 2.8, circular connectors (MIL-DTL-38999) 2.9 to 3.1,
 headers 3.2 to 4."""
+_SPREADS = 3.0
+"""Standard deviations of both contacts of a pair within which a good plug finds its socket."""
+_OVER_CONTACTS = 4.0
+"""Sides of an insulator over what its contacts span; micro-Ds have 1.3 along and 2.5 across."""
 _MASS_RATIO = 0.2
 """Modules of one drawing differ by a few percent: solder, screws, a label."""
 
@@ -95,6 +99,40 @@ def capture_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[C
             "how far off one plug still finds one socket"
         )
         yield ConfigIssue(f"{key}.plug", f"capture_mm = {plug.capture_m / MM:g} in it", said)
+
+
+def spread_issues(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
+    """Contacts that are good by their drawings and do not find their holes."""
+    drawings = read_drawings(recipe, folder)
+    plug_mm, socket_mm = (one.true_position_m / MM for one in (drawings.plug, drawings.socket))
+    capture_mm, spread_mm = drawings.socket.capture_m / MM, hypot(plug_mm, socket_mm)
+    if _SPREADS * spread_mm > capture_mm:
+        allowed = (
+            f"standard deviations of which {_SPREADS:g} of a pair, here {_SPREADS * spread_mm:.2g} "
+            f"mm, are less than capture_mm = {capture_mm:g} of the socket: a contact that is bent "
+            "so far would be called good, and would stand on the face"
+        )
+        against = (
+            WrittenValue(f"{key}.socket", f"{recipe.socket!r}, true_position_mm = {socket_mm:g}"),
+        )
+        value = f"{recipe.plug!r}, true_position_mm = {plug_mm:g}"
+        yield ConfigIssue(f"{key}.plug", value, allowed, against=against)
+
+
+def outline_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:
+    """Insulators that are far larger than what they hold: further contacts are looked for there,
+    and the lever of a force is believed as far out."""
+    drawings = read_drawings(recipe, folder)
+    for name, connector in (("plug", drawings.plug), ("socket", drawings.socket)):
+        spans_m = np.ptp(connector.positions_m, axis=0) + connector.diameter_m
+        times = float((np.array(connector.outline_m) / spans_m).max())
+        if times > _OVER_CONTACTS:
+            outline_mm = [round(side_m / MM, 3) for side_m in connector.outline_m]
+            said = (
+                f"{times:.2g} times as wide as its contacts with what they span; right if the "
+                "insulator is so large"
+            )
+            yield ConfigIssue(f"{key}.{name}", f"outline_mm = {outline_mm} in it", said)
 
 
 def pitch_remarks(recipe: AntennaRecipe, key: str, folder: Path) -> Iterator[ConfigIssue]:

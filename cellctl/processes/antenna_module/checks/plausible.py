@@ -21,6 +21,7 @@ from cellctl.processes.antenna_module.checks.drawn import (
     holding_bounds,
     one_file_twice,
     pull_issues,
+    spread_issues,
 )
 from cellctl.processes.antenna_module.checks.figures import (
     arm_bounds,
@@ -51,6 +52,7 @@ def plausible_issues(
     yield from one_file_twice(recipe, key, settings.reference, where)
     yield from marks_unit_issues(recipe, key, settings.reference, where, folder)
     yield from force_issues(cell, recipe, key, folder)
+    yield from spread_issues(recipe, key, folder)
     yield from pull_issues(cell, recipe, key)
     # Read once: no other value of a figure, of which hundreds are tried, names other files.
     socket, stored = read_drawings(recipe, folder).socket, stored_cameras(cell, folder)

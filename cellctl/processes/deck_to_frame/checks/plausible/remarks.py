@@ -33,7 +33,7 @@ spread along it."""
 _LEAST_PLACE_MM = 0.0013
 """What the best coordinate measuring machines tell of a place over 0.5 m, 0.9 µm + L/350 (greatest
 permissible error by their makers, ISO 10360-2), over the root of three."""
-_WIDEST_HEAD = 3.0
+_HEADS = (1.4, 3.0)
 """Over the bore of its screw; countersunk heads have 1.8 to 2.2 (ISO 10642, ISO 15065)."""
 _USUAL_PAST_MM, _USUAL_WINDOW_MM = 0.5, 1.0
 _MOST_LEFT = 0.6
@@ -100,13 +100,19 @@ def _exact_places(drawing: PartDrawing) -> Iterator[ConfigIssue]:
 def _countersinks(deck: PartDrawing) -> Iterator[ConfigIssue]:
     """A bore that is too narrow for the head that its countersink holds."""
     for hole in deck.features.holes:
-        if hole.countersink_m is not None and hole.countersink_m > _WIDEST_HEAD * hole.diameter_m:
-            said = (
-                f"the countersink is {hole.countersink_m / hole.diameter_m:.2g} times as wide as "
-                "its bore, and heads of screws are twice: is this the radius?"
-            )
-            value = f"{hole.diameter_m / MM:g}"
-            yield deck.hole_issue(hole.name, "diameter_mm", value, said)
+        if hole.countersink_m is None:
+            continue
+        times = hole.countersink_m / hole.diameter_m
+        said = (
+            f"the countersink is {times:.2g} times as wide as its bore, and heads of screws are "
+            "twice: is this the radius?"
+        )
+        if times > _HEADS[1]:
+            yield deck.hole_issue(hole.name, "diameter_mm", f"{hole.diameter_m / MM:g}", said)
+            return
+        if times < _HEADS[0]:
+            value = f"{hole.countersink_m / MM:g}"
+            yield deck.hole_issue(hole.name, "countersink_mm", value, said)
             return
 
 

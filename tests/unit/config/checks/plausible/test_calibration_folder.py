@@ -41,6 +41,23 @@ def test_a_folder_that_is_empty_or_missing_is_that_of_a_new_cell(tmp_path: Path)
     assert in_folder(tmp_path, "deck.toml", "demo-calibration", "not-there") == ""
 
 
+@pytest.mark.parametrize(
+    ("file", "old", "new", "key"),
+    [
+        ("antenna.toml", "views = 30", "views = 3", "processes.antenna-module.views"),
+        ("deck.toml", "square_mm = 25.0", 'square_mm = "25"', "processes.deck-to-frame.square_mm"),
+        ("small.toml", "port = ", "prot = ", ""),
+    ],
+)
+def test_a_section_that_is_wrong_itself_has_one_error(
+    tmp_path: Path, file: str, old: str, new: str, key: str
+) -> None:
+    """Nobody knows what its process stores, and its own folder is no other cell's."""
+    found = [one.key for one in problems_before_commissioning(written(tmp_path, file, old, new))]
+    assert "calibration_dir" not in found
+    assert not key or found == [key]
+
+
 def test_one_of_its_own_calibrations_is_enough(tmp_path: Path) -> None:
     (tmp_path / "begun").mkdir(parents=True)
     for name in ("demo-calibration/head_1", "antenna-calibration/camera_1"):

@@ -111,3 +111,23 @@ def test_marks_in_metres_or_inches_are_refused(
     (issue,) = examine_before_commissioning(tmp_path / "antenna.toml").errors
     assert issue.key == key
     assert "in metres or inches" in issue.allowed
+
+
+def test_an_insulator_that_is_far_larger_than_its_contacts_need(tmp_path: Path) -> None:
+    ten_times = [(HOLES, "outline_mm = [12.0, 3.9]", "outline_mm = [120.0, 39.0]")]
+    said = remarks(tmp_path, ten_times, calibrated=False)
+    assert "times as wide as its contacts with what they span" in said["recipes.0.socket"]
+
+
+def test_good_contacts_that_do_not_find_their_holes_are_refused(tmp_path: Path) -> None:
+    copytree(CONFIG / "connectors", tmp_path / "connectors")
+    for name in (PINS, HOLES):
+        path = tmp_path / "connectors" / f"{name}.toml"
+        text = path.read_text(encoding="utf-8")
+        wide = text.replace("true_position_mm = 0.010", "true_position_mm = 0.1")
+        path.write_text(wide, encoding="utf-8")
+    (tmp_path / "antenna.toml").write_text((CONFIG / "antenna.toml").read_text(encoding="utf-8"))
+    (tmp_path / "antenna-calibration").mkdir()
+    (issue,) = examine_before_commissioning(tmp_path / "antenna.toml").errors
+    assert issue.key == "recipes.0.plug"
+    assert "here 0.42 mm, are less than capture_mm = 0.2" in issue.allowed

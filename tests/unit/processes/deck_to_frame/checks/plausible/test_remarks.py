@@ -27,3 +27,12 @@ def test_a_thickness_that_is_stated_once_is_remarked_on(tmp_path: Path) -> None:
     lines = file.read_text().splitlines(keepends=True)
     file.write_text("".join(line for line in lines if not line.startswith("thickness_mm")))
     assert key in [one.key for one in remarks(folder)]
+
+
+def test_a_countersink_that_holds_no_head_is_remarked_on(tmp_path: Path) -> None:
+    folder = tmp_path / "config"
+    shutil.copytree(CONFIG, folder)
+    file = folder / "features" / "deck.toml"
+    file.write_text(file.read_text().replace("countersink_mm = 10.0", "countersink_mm = 6.0"))
+    (found,) = [one for one in remarks(folder) if one.key == "recipes.0.deck_features"]
+    assert "hole P2, countersink_mm = 6: the countersink is 1.2 times" in found.allowed
