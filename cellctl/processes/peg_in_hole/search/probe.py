@@ -226,9 +226,24 @@ class TouchProbe:
                     return True
                 # It was a scratch or an edge: the turn goes on behind it and does not begin anew.
                 rest_m = _beyond(rest_m, motion.last.task_position_tip_m[:2])
+                rest_m = await self._out_of_mouth(rest_m)
             # A turn without an entry is knowledge too: a strategy that follows finds it in the map.
             self.hole_map.rule_out(way_m + centre_m)
         return False
+
+    async def _out_of_mouth(self, rest_m: Array) -> Array:
+        """The rest of a way (n, 2), from where it leaves a mouth that has let nothing in.
+
+        Slid on from there the peg would only be pressed against the flanks of the same mouth.
+        """
+        stands = self.trace.points[-1]
+        if stands.felt is not Felt.EDGE:
+            return rest_m
+        away_m = np.linalg.norm(rest_m - [stands.x_m, stands.y_m], axis=1)
+        outside_m = rest_m[away_m > self.parameters.catch.value]
+        if len(outside_m):
+            await self.touch_down(outside_m[0], UPRIGHT)
+        return outside_m
 
     async def _enters_between(self, begin: ContactSample | None, end: ContactSample) -> bool:
         """Back to the middle of where nothing carried the peg, and press there."""

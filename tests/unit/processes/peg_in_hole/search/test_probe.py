@@ -88,6 +88,23 @@ def test_a_peg_that_stands_in_the_mouth_is_not_lifted_out_of_it(stiffness_n_m: f
     assert not any(tip[2] < 0.0 for tip in world.sent)
 
 
+def test_a_mouth_that_lets_nothing_in_is_left_and_not_pressed_again_and_again() -> None:
+    # The bore is narrower than the peg, and lies on the first turn of the spiral.
+    narrow = Hole(3e5, np.array([-0.76e-3, 0.0]), -0.1e-3, chamfer_m=0.6e-3, depth_m=12e-3)
+    world = standing_in(narrow, at_m=(0.0, 0.0, -0.1e-3))
+    probe = probe_in(world, 3e5, 0.5)
+
+    async def search() -> bool:
+        await probe.touch_down(np.zeros(2), UPRIGHT)
+        return await probe.spiral(np.zeros(2), 1.5e-3)
+
+    assert not asyncio.run(search())
+    assert [point.felt for point in probe.trace.points].count(Felt.EDGE) <= 2
+    # The turn goes on to its end.
+    assert np.linalg.norm(world.tip[:2]) == pytest.approx(1.5e-3, abs=0.1e-3)
+    assert greatest_n(world) < 1.5 * probe.press_n
+
+
 def test_a_touch_goes_down_as_fast_as_its_force_may_grow_by_a_whole_press() -> None:
     world = standing_in(wall(1e6), at_m=(0.0, 0.0, -1e-3))
     probe = probe_in(world, 1e6, 0.0)
