@@ -240,7 +240,7 @@ class TouchProbe:
         if stands.felt is not Felt.EDGE:
             return rest_m
         away_m = np.linalg.norm(rest_m - [stands.x_m, stands.y_m], axis=1)
-        outside_m = rest_m[away_m > self.parameters.catch.value]
+        outside_m: Array = rest_m[away_m > self.parameters.catch.value]
         if len(outside_m):
             await self.touch_down(outside_m[0], UPRIGHT)
         return outside_m
