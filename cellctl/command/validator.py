@@ -4,7 +4,8 @@ The first check that fails gives the reject code. Stop and Abort meet only check
 
 1. Link: a client whose link is dead may only end motion (``Submission.link_fault``).
 2. Parameters: serial number, order and options are well formed.
-3. Turn: no Stop, and no command of another source, came between giving and executing the command.
+3. Turn: no Stop, and no command of another source, came between giving and executing the command,
+   and what may move a robot was not given too long ago.
 4. Authority: the line PLC alone commands motion in Production while it is alive.
 5. Mode: a command that is meant for one mode is not carried out in another.
 6. Start: recipe or procedure, calibrations, records and devices (``runtime.jobs.factory``).
@@ -28,7 +29,7 @@ from cellctl.packml.machine import PackMLMachine
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
-from cellctl.packml.unit_command import KNOWN_OPTIONS, Source, UnitCommand
+from cellctl.packml.unit_command import KNOWN_OPTIONS, MOST_AGE_S, Source, UnitCommand
 from cellctl.packml.validation import validate_command, validate_mode
 from cellctl.runtime.jobs.factory import JobFactory
 from cellctl.runtime.unit import MAY_MOVE
@@ -139,6 +140,8 @@ class CommandValidator:
         # Whoever gave a command before one of these happened did not know of it, and might have
         # decided otherwise. Their own earlier commands, however, they do know.
         if command.arrived_s < max(self._stopped_s, *others):
+            return RejectCode.SUPERSEDED
+        if command.cntrl_cmd in MAY_MOVE and now_s() - command.arrived_s > MOST_AGE_S:
             return RejectCode.SUPERSEDED
         mode, state = self._machine.mode, self._machine.state
         authority = validate_authority(command, mode, line_alive=self._line_alive())

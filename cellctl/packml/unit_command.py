@@ -29,6 +29,12 @@ class Options(IntFlag):
 KNOWN_OPTIONS = Options.DRY_RUN | Options.SINGLE_STEP
 
 
+MOST_AGE_S = 10.0
+"""What may move a robot is not begun when it was given longer ago. A daemon that stood still finds
+commands in its sockets; whoever gave them was told that nobody has answered, and may be in the
+cell."""
+
+
 @dataclass(frozen=True, slots=True)
 class UnitCommand:
     """What somebody asks of the unit. Nothing in it has been validated yet.

@@ -91,6 +91,17 @@ class AcknowledgeCommand(Message):
 
 
 CommandRequest = PlainCommand | StartCommand | ProcedureCommand | ModeCommand | AcknowledgeCommand
+
+
+class GivenCommand(Message):
+    """A command of the terminal, with the time at which somebody gave it."""
+
+    request: Literal["given"] = "given"
+    given_s: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    """Monotonic time of this PC in seconds."""
+    command: Annotated[CommandRequest, Field(discriminator="request")]
+
+
 Role = Literal["view", "operate", "maintain"]
 """What a person may do on the page; each one includes those before it."""
 Word = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,32}$")]
@@ -126,7 +137,7 @@ class FollowRequest(Message):
     request: Literal["follow"] = "follow"
 
 
-Request = StatusRequest | RobotRequest | FollowRequest | PageCommand | CommandRequest
+Request = StatusRequest | RobotRequest | FollowRequest | PageCommand | GivenCommand | CommandRequest
 
 
 class Taken(Message):

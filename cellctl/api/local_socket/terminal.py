@@ -10,6 +10,7 @@ from cellctl.api.local_socket.messages import (
     Answer,
     CommandRequest,
     FollowRequest,
+    GivenCommand,
     ModeCommand,
     PageCommand,
     PlainCommand,
@@ -96,7 +97,10 @@ class Terminal:
             return await self._desk.handle(request, uid)
         assert not isinstance(request, FollowRequest), "the server sees to those who follow"
         # Before the user is looked up, because the time of a command is that at which it was given.
-        command = self._command(request)
+        if isinstance(request, GivenCommand):
+            command = _given_at(self._command(request.command), request.given_s)
+        else:
+            command = self._command(request)
         if not command.ends_motion:
             # A directory service may take a second, which a Stop cannot wait.
             await self._users.look_up(uid)
@@ -181,6 +185,14 @@ class Terminal:
         # Two recipes may have one name, and a name may be another one's number. Nothing is guessed:
         # the validator refuses 0 with the reject code that the line would get.
         return found[0] if len(found) == 1 else 0
+
+
+def _given_at(command: UnitCommand, given_s: float) -> UnitCommand:
+    """The command with the time at which somebody gave it, which may be long ago in a daemon that
+    stood still. A Stop or an Abort counts from now on: it ends what was given before."""
+    if command.ends_motion:
+        return command
+    return replace(command, arrived_s=min(given_s, command.arrived_s))
 
 
 def _options(request: StartCommand) -> Options:

@@ -10,6 +10,7 @@ from cellctl.api.local_socket.messages import (
     Answer,
     CommandRequest,
     Failed,
+    GivenCommand,
     Refused,
     Request,
     RobotAnswer,
@@ -30,6 +31,8 @@ from cellctl.errors.local import (
 )
 
 ANSWER_S = 10.0
+"""At least ``MOST_AGE_S`` of the daemon: whoever is told that it does not answer must not find an
+arm moving later."""
 SETTLE_S = 60.0
 _POLL_S = 0.2
 _PATIENT_POLL_S = 1.0
@@ -60,7 +63,7 @@ class DaemonClient:
 
     def command(self, request: CommandRequest) -> None:
         """Have a command obeyed; raises ``CommandRefused`` with the reason."""
-        answer = self._ask(request)
+        answer = self._ask(GivenCommand(given_s=now_s(), command=request))
         if isinstance(answer, Refused):
             raise CommandRefused("; ".join(_refusal(answer)))
 

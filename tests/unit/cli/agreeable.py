@@ -10,6 +10,7 @@ from typing import Any
 
 from cellctl.api.local_socket.messages import (
     Answer,
+    GivenCommand,
     Refused,
     Request,
     StatusAnswer,
@@ -19,6 +20,8 @@ from cellctl.api.local_socket.messages import (
 from cellctl.api.local_socket.report import FaultReport, StatusReport
 from cellctl.api.local_socket.server import LocalServer
 from cellctl.api.local_socket.socket_file import SocketFile
+from cellctl.clock import now_s
+from cellctl.packml.unit_command import MOST_AGE_S
 
 _LEADS_TO = {
     "clear": "STOPPED",
@@ -78,6 +81,9 @@ class Agreeable:
     async def handle(self, request: Request, _uid: int) -> Answer:
         if isinstance(request, StatusRequest):
             return StatusAnswer(report=StatusReport(**self.shows))
+        if isinstance(request, GivenCommand):
+            assert 0.0 <= now_s() - request.given_s < MOST_AGE_S
+            request = request.command
         self.asked.append(request)
         if self.refusal is not None:
             return self.refusal

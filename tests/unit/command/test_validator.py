@@ -3,14 +3,18 @@
 import asyncio
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
 from cellctl.clock import now_s
 from cellctl.command.submission import Submission
-from cellctl.command.validator import validate_parameters
-from cellctl.packml import Command, RejectCode, State
+from cellctl.command.validator import CommandValidator, validate_parameters
+from cellctl.packml import Command, PackMLMachine, RejectCode, State
+from cellctl.packml.command import COMMANDS
+from cellctl.packml.unit_command import MOST_AGE_S, Source, UnitCommand
+from cellctl.runtime.jobs.factory import JobFactory
+from cellctl.runtime.unit import MAY_MOVE
 from tests.unit.cell.bench import start_command
 from tests.unit.daemon_rig import BY_ANNA, DaemonRig
 
@@ -96,3 +100,19 @@ async def test_a_validation_gives_way_to_the_stop_behind_it(
         assert await rig.arbiter.submit(reset) is RejectCode.SUPERSEDED
     assert rig.unit.machine.state is State.STOPPED
     assert rig.shown().alarms == ()
+
+
+@pytest.mark.parametrize("source", list(Source))
+@pytest.mark.parametrize("command", list(COMMANDS))
+def test_what_may_move_a_robot_is_not_begun_long_after_it_was_given(
+    source: Source, command: Command
+) -> None:
+    """A daemon that stood still finds it in its sockets when nobody waits for an answer."""
+    machine = PackMLMachine({})
+    validator = CommandValidator(machine, cast(JobFactory, None), lambda: False)
+    now = now_s()
+    young = UnitCommand(source, cntrl_cmd=command, arrived_s=now - MOST_AGE_S + 1.0)
+    assert validator.validate_turn(young) is RejectCode.NONE
+    old = UnitCommand(source, cntrl_cmd=command, arrived_s=now - MOST_AGE_S - 0.1)
+    late = RejectCode.SUPERSEDED if command in MAY_MOVE else RejectCode.NONE
+    assert validator.validate_turn(old) is late

@@ -10,6 +10,7 @@ import pytest
 from cellctl.api.local_socket.live_view import PRESSES_N, LiveView
 from cellctl.api.local_socket.messages import (
     AcknowledgeCommand,
+    GivenCommand,
     ModeCommand,
     PlainCommand,
     ProcedureCommand,
@@ -28,6 +29,8 @@ from cellctl.api.local_socket.report import StatusReport
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.terminal import Terminal
 from cellctl.api.local_socket.users import Users
+from cellctl.cli.operator.daemon_client import ANSWER_S
+from cellctl.clock import now_s
 from cellctl.errors.link import DeviceAway, LinkLost, StaleData
 from cellctl.errors.local import MessageMalformed
 from cellctl.errors.records import StoreUnavailable
@@ -35,6 +38,7 @@ from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
+from cellctl.packml.unit_command import MOST_AGE_S
 from cellctl.records.store import RunStore
 from tests.unit.calibration.store.shipped import renew_calibrations
 from tests.unit.command.test_arbiter import audit
@@ -180,6 +184,25 @@ async def test_a_stop_waits_for_no_directory_of_users(
     await rig.to(State.STOPPED)
     await rig.unit.background.drain()
     assert (await rig.archive.do(audit))[-1][:2] == ("terminal:4000000", "stop")
+
+
+async def test_a_command_counts_from_when_it_was_given(rig: DaemonRig, operator: Operator) -> None:
+    """A daemon that stood still may read a Stop first that was given after a Reset."""
+    await rig.idle()
+    given_s = now_s()
+    await operator.plain("stop")
+    await rig.to(State.STOPPED)
+    resets = rig.states.count(State.RESETTING)
+    reset = PlainCommand(request="reset")
+    answer = await operator.ask(GivenCommand(given_s=given_s, command=reset))
+    assert isinstance(answer, Refused)
+    assert answer.code == RejectCode.SUPERSEDED
+    assert rig.states.count(State.RESETTING) == resets
+    assert isinstance(await operator.ask(GivenCommand(given_s=now_s(), command=reset)), Taken)
+
+
+def test_a_terminal_waits_as_long_as_the_daemon_may_begin_what_it_asks_for() -> None:
+    assert ANSWER_S >= MOST_AGE_S
 
 
 async def test_an_unknown_user_is_a_number() -> None:
