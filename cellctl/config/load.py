@@ -180,7 +180,9 @@ def _of_another_device(issue: ConfigIssue, raw: Mapping[str, Any]) -> ConfigIssu
 def _read(path: Path) -> str:
     try:
         return read_hand_written(path)
-    except (OSError, UnicodeDecodeError) as error:
+    except OSError as error:
+        raise ConfigUnreadable(f"{path}: {error.strerror or error}") from error
+    except UnicodeDecodeError as error:
         raise ConfigUnreadable(f"{path}: {error}") from error
 
 

@@ -17,6 +17,7 @@ from cellctl.errors.records import StoreUnavailable
 from cellctl.records.entered.said_by import BY
 from cellctl.records.store import RunStore
 from cellctl.runtime.process import calibration_kinds
+from cellctl.spelling import nearest
 
 
 def invalidate(
@@ -53,7 +54,11 @@ def invalidate(
     # a bad calibration, the other way round it is not.
     found = store.invalidate([kind], f"{reason} ({by})")
     if not found:
-        raise CalibrationMissing(f"{name}: there is no such calibration in {store.path}")
+        there = store.names()
+        raise CalibrationMissing(
+            f"{name}: there is no such calibration in {store.path}; {nearest(name, there)}"
+            f"there: {', '.join(there) or 'none'}"
+        )
     anew = f"made anew by {kind.made_by}" if kind.made_by else "made anew"
     for stored in found:
         typer.echo(f"{stored.kind} is invalid until it is {anew}: {reason}")

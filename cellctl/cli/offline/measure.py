@@ -2,6 +2,7 @@
 
 import json
 import warnings
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -10,6 +11,8 @@ import numpy as np
 import typer
 
 from cellctl.calibration.output_file import write_file
+from cellctl.cli.consoles import console_of_lines, print_hanging
+from cellctl.errors.base import CellError
 from cellctl.errors.config import FileInvalid, OutputNotWritten
 from cellctl.errors.vision import (
     DrawingMirrored,
@@ -33,6 +36,8 @@ from cellctl.vision.picture import annotate
 from cellctl.vision.registration.part_pose import PartPose, part_pose
 from cellctl.vision.registration.rigid_fit import on_a_line
 
+_OTHER_SIZES = {2.0: "twice", 0.5: "half"}
+"""Diameters over the drawn ones, as a radius in place of a diameter makes them."""
 EXIT_REFUSED = 1
 EXIT_NOT_FOUND = 3
 
@@ -68,20 +73,26 @@ def measure(  # noqa: PLR0917 - the options of the command
     # An exit code of its own: a script that scans many images must tell "not in the picture" from a
     # wrong file.
     except (HoleMissing, HoleAmbiguous, TooFewHoles) as fault:
-        typer.echo(f"{fault}\n  {fault.remedy}", err=True)
+        _say(fault)
         raise typer.Exit(EXIT_NOT_FOUND) from fault
     except (VisionError, FileInvalid, OutputNotWritten) as fault:
-        typer.echo(f"{fault}\n  {fault.remedy}", err=True)
+        _say(fault)
         raise typer.Exit(EXIT_REFUSED) from fault
     if out is None:
         typer.echo(text, nl=False)
+
+
+def _say(fault: CellError) -> None:
+    console = console_of_lines(stderr=True)
+    print_hanging(console, str(fault), 5)
+    print_hanging(console, f"  {fault.remedy}", 2)
 
 
 def _measured(
     images: tuple[Image, Image], head: StereoHead, holes: tuple[Hole, ...], method: Method
 ) -> PairMeasurement:
     """The holes of a pair; where they are not found, whether its images were exchanged, or its
-    drawing is mirrored."""
+    drawing is mirrored or has radii in place of diameters."""
     if np.array_equal(*images):
         raise ImageFileInvalid("left and right are the same image")
     try:
@@ -96,9 +107,20 @@ def _measured(
                 "all holes are found with x of the other sign, and as drawn they are not "
                 f"({fault.detail})"
             ) from fault
+        for size, words in _OTHER_SIZES.items():
+            if _are_found(images, head, tuple(_resized(hole, size) for hole in holes), method):
+                raise FileInvalid(
+                    f"all holes are found {words} as wide as drawn, and as drawn they are not "
+                    f"({fault.detail}): is diameter_mm the radius, or twice the diameter?"
+                ) from fault
         raise
     require_seen_face(holes, result.positions_m)
     return result
+
+
+def _resized(hole: Hole, size: float) -> Hole:
+    countersink_m = None if hole.countersink_m is None else size * hole.countersink_m
+    return replace(hole, diameter_m=size * hole.diameter_m, countersink_m=countersink_m)
 
 
 def _are_found(

@@ -81,3 +81,9 @@ def test_it_holds_without_a_store_too(cell: Path) -> None:
 def test_a_mistyped_name_is_said(cell: Path) -> None:
     with pytest.raises(CalibrationMissing, match="head_3"):
         invalidate(cell, "head_3")
+
+
+def test_a_name_that_is_misspelt_is_told_with_those_that_are_there(cell: Path) -> None:
+    arguments = ["calibrate", "invalidate", "payloda", *ARGUMENTS, "--cell", str(cell)]
+    with pytest.raises(CalibrationMissing, match=r"did you mean 'payload'.* there: base_frame, "):
+        CliRunner().invoke(whole_app(), arguments, catch_exceptions=False)

@@ -136,6 +136,24 @@ def test_exchanged_images_are_named(folder: Path) -> None:
     assert "left and right are exchanged" in result.output
 
 
+@pytest.mark.parametrize(
+    ("size", "words"), [(0.5, "found twice as wide as drawn"), (2.0, "found half as wide")]
+)
+def test_radii_in_place_of_diameters_are_named(folder: Path, size: float, words: str) -> None:
+    text = (folder / "plate.toml").read_text()
+    sizes = r"((?:diameter|countersink)_mm) = ([\d.]+)"
+    other = re.sub(sizes, lambda found: f"{found[1]} = {size * float(found[2])}", text)
+    assert other != text
+    (folder / "radii.toml").write_text(other)
+    app = typer.Typer()
+    app.command()(measure)
+    arguments = ["--calibration", str(folder / "head.json"), "--features"]
+    arguments += [str(folder / "radii.toml"), "--left", str(folder / "left.png")]
+    result = CliRunner().invoke(app, [*arguments, "--right", str(folder / "right.png")])
+    assert result.exit_code == 1
+    assert words in result.output
+
+
 def test_one_image_for_both_cameras_is_named(folder: Path) -> None:
     result = run(folder, right="left.png")
     assert result.exit_code == 1
