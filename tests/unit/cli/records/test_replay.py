@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
 from cellctl.errors.records import NotReplayable
+from cellctl.processes.deck_to_frame.process import DeckToFrame
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import MAINTENANCE
 from cellctl.records.files.artefacts import CELL_FILE
@@ -61,3 +62,14 @@ def test_a_procedure_that_no_process_of_its_cell_computes_anew_is_refused(
     refused = CliRunner().invoke(whole_app(), ["replay", "1", "--data-dir", str(store.path)])
     assert isinstance(refused.exception, NotReplayable)
     assert words in refused.exception.detail
+
+
+def test_a_run_of_which_nothing_was_compared_is_not_called_identical(
+    store: RunStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store.close_run(start(store), RunResult.GOOD)
+    monkeypatch.setattr(DeckToFrame, "replay", lambda *_: iter(()))
+    refused = CliRunner().invoke(whole_app(), ["replay", "1", "--data-dir", str(store.path)])
+    assert isinstance(refused.exception, NotReplayable)
+    assert "no number that could be compared" in refused.exception.detail
+    assert "identical" not in refused.output
