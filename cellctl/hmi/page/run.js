@@ -86,11 +86,12 @@ function state(s) {
   const mark = s.state.startsWith("ABORT") ? "■ " : waiting ? "● " : "";
   const run = s.run.number ? t("run_line", s.run.number, s.run.serial || "—", t(`result_${s.run.result}`)) : t("no_run");
   return [h("div", { class: `state live${colour}`, id: "state", "data-state": s.state }, mark + word + to),
-    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, label(s.step.label), s.pass || "—") : t("no_step")), ...far(s),
+    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, label(s.step.label), s.pass || "—") : t("no_step")),
     h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, label(s.step.text)) : null,
     h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
     ...s.forces.filter((one) => one.presses_n).map((one) => h("p", { class: "bad pressing" }, `■ ${t("presses", shown(one.presses_n, 1), one.sensor)}`)),
-    h("p", { class: "live", id: "next" }, next(s))];
+    // What is left stands last: on a low panel the commands cover it sooner than what is to be done.
+    h("p", { class: "live", id: "next" }, next(s)), ...far(s)];
 }
 
 // What is to be done, in the words of state and mode; in Idle, why nothing can be started.

@@ -20,8 +20,8 @@ TOLD = {"number": 50, "step": 5, "of": 7, "left_s": 100.6, "longer": False, "by_
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({}, "Step 5 of 7, about 1:41 min left"),
-        ({"longer": True}, "Step 5 of 7, which takes longer than usual"),
+        ({}, "5 of 7 steps, about 1:41 min left"),
+        ({"longer": True}, "5 of 7 steps, this one takes longer than usual"),
     ],
 )
 def test_the_step_of_all_and_what_is_left_are_told(
@@ -47,3 +47,17 @@ def test_without_a_good_run_of_the_recipe_no_time_is_told(
     assert asked.value.status == 200
     expect(screen.tab.locator("#step")).to_contain_text("mate")
     expect(screen.tab.locator("#left")).to_have_count(0)
+
+
+def test_on_a_low_panel_what_is_to_be_done_stays_in_sight(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    screen.tab.set_viewport_size({"width": 1024, "height": 600})
+    screen.tab.route("**/time-left", lambda route: route.fulfill(json=TOLD))
+    paper.snapshot = snapshot(**RUNNING)
+    expect(screen.tab.locator("#left")).to_be_visible()
+    end, commands = screen.tab.evaluate(
+        "['#next', '.commands'].map((one) => document.querySelector(one).getBoundingClientRect())"
+        ".map((one, i) => i ? one.top : one.bottom)"
+    )
+    assert end <= commands
