@@ -57,7 +57,7 @@ class SjlChannel:
         self._on_lost = on_lost
         self._server: asyncio.Server | None = None
         self._client: _Client | None = None
-        self._accepted = False
+        self._accepted = self._barred = False
         self._changed = asyncio.Event()
         self._refused: LinkError | None = None
 
@@ -83,7 +83,7 @@ class SjlChannel:
     async def listen(self, host: str, port: int) -> None:
         """Open the port; ``PortInUse`` when it cannot be had."""
         loop = asyncio.get_running_loop()
-        self._refused = None
+        self._refused, self._barred = None, False
         self._strangers.clear()
         try:
             self._server = await loop.create_server(lambda: _Client(self), host, port)
@@ -120,6 +120,11 @@ class SjlChannel:
             self._client.abort()
             self._ended(fault)
 
+    def bar(self, fault: LinkError) -> None:
+        """End the session because of a fault, and admit nobody before the port is opened anew."""
+        self._barred = True
+        self.drop(fault)
+
     async def close(self) -> None:
         """Close client and listener. Idempotent."""
         client, self._client, self._accepted = self._client, None, False
@@ -139,7 +144,7 @@ class SjlChannel:
             return False
         # The first one stays: a second caller could otherwise take a moving robot away from its
         # link.
-        if self._client is not None or self._server is None:
+        if self._client is not None or self._server is None or self._barred:
             _log.warning("%s: second connection refused", self)
             return False
         self._client = client

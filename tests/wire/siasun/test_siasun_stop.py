@@ -15,7 +15,8 @@ from cellctl.errors.robot import (
     NotRearmed,
     StopFailed,
 )
-from tests.rigs.wire.siasun_cell import THERE_TEXT, Cell, running
+from drivers.robot.siasun.channels.after_stop import LONGEST_S
+from tests.rigs.wire.siasun_cell import LATCHED, THERE_TEXT, Cell, running
 from tests.rigs.wire.siasun_peer import POSE
 
 
@@ -141,3 +142,46 @@ async def test_disconnect_stops_a_running_move(cell: Cell) -> None:
     await leaving
     with pytest.raises(MotionAborted):
         await move
+
+
+TURNED = "0.50000,-45.00000,90.00000,0.00000,45.00000,0.00000"
+
+
+@pytest.mark.parametrize(
+    "reports",
+    [
+        pytest.param([{"flags": "REM,0,1,1,1,0,100"}], id="it says so itself"),
+        pytest.param(
+            [{"flags": LATCHED}, {"flags": LATCHED, "joints": TURNED}], id="by its joints"
+        ),
+    ],
+)
+async def test_an_arm_that_moves_on_after_a_confirmed_stop_loses_its_links(
+    cell: Cell, reports: list[dict[str, str]], caplog: pytest.LogCaptureFixture
+) -> None:
+    stopping = asyncio.create_task(cell.robot.stop())
+    await cell.sta.expect_word("ABORT")
+    cell.sta.send(f"STOPD,1,{POSE}")
+    await stopping
+    *first, last = reports
+    for report in first:
+        cell.sta.stat(**report)
+    closed = asyncio.create_task(cell.sta.closed())
+    await cell.report_until(closed, **last)
+    await cell.cmd.closed()
+    assert "has confirmed a stop and reports that it moves on" in caplog.text
+    with pytest.raises(LinkLost):
+        cell.robot.state()
+    with pytest.raises(StopFailed):
+        await cell.robot.stop()
+
+
+async def test_an_arm_may_be_jogged_after_a_stop(cell: Cell) -> None:
+    stopping = asyncio.create_task(cell.robot.stop())
+    await cell.sta.expect_word("ABORT")
+    cell.sta.send(f"STOPD,1,{POSE}")
+    await stopping
+    cell.sta.stat(flags=LATCHED)
+    jogging = asyncio.create_task(asyncio.sleep(2 * LONGEST_S))
+    await cell.report_until(jogging, flags="MAN,0,1,1,1,0,100", joints=TURNED)
+    assert cell.robot.state(0.1).moving

@@ -11,6 +11,7 @@ from cellctl.errors.link import LinkError, LinkLost, ProtocolViolation, StaleDat
 from cellctl.errors.robot import ControllerFault, StopFailed
 from cellctl.geometry.euler_order import EulerOrder
 from cellctl.interfaces.robot import RobotMode, RobotState
+from drivers.robot.siasun.channels.after_stop import AfterStop
 from drivers.robot.siasun.codec.poses import read_pose
 from drivers.robot.siasun.codec.records import Record, Status, StopDone
 from drivers.robot.siasun.config import SiasunConfig
@@ -60,6 +61,7 @@ class StateChannel:
         self._waiters: dict[asyncio.Future[None], Callable[[Status], bool]] = {}
         self._stops: dict[asyncio.Future[None], int] = {}
         self._abort_id = 0
+        self._after_stop = AfterStop()
         self._beats = 0
         self._beat_s = 0.0
         self._longest_pause_s = 0.0
@@ -189,6 +191,10 @@ class StateChannel:
         if self._status is not None and not status.follows(self._status):
             return
         self._status, self._state, self._time_s = status, None, now_s()
+        if self._after_stop.moves_on(status, self._time_s):
+            words = f"{self._robot} has confirmed a stop and reports that it moves on"
+            self.channel.bar(LinkLost(f"{self.channel}: {words}"))
+            return
         # A slow interpreter reads one record in each of its rounds. Unasked heartbeats would
         # queue up before it, and a stop behind them.
         if self.channel.hello.compact:
@@ -204,6 +210,7 @@ class StateChannel:
             # STOPD of a later stop confirms the earlier ones too: the robot stands.
             if not future.done() and abort_id <= record.id:
                 future.set_result(None)
+        self._after_stop.confirmed()
         self._on_stopped()
 
     def _lost(self, fault: LinkError) -> None:
