@@ -124,17 +124,19 @@ def test_every_move_is_held_against_the_model_beside_the_file(tmp_path: Path) ->
     done = CliRunner().invoke(whole_app(), ["check", "--moves", str(cell_file)])
     assert done.exit_code == 0, done.output
     assert "every move is free, by the model" in done.stdout
-    # The part beside its place, on the way of the arm.
+    # A block beside the part, on the way of the arm.
     model = tmp_path / "insertion-pin.model.toml"
     text = model.read_text(encoding="utf-8")
     model.unlink()
-    model.write_text(text.replace("[500.0, -200.0, 100.0,", "[400.0, -200.0, 240.0,"))
+    size, at = "[120.0, 120.0, 200.0]", "[400.0, -200.0, 240.0, 0.0, 0.0, 0.0]"
+    block = f"block = {{ box = {{ size_mm = {size}, at = {at} }} }}"
+    model.write_text(text.replace("[fixtures]", f"[fixtures]\n{block}"))
     done = CliRunner().invoke(whole_app(), ["check", "--moves", "--json", str(cell_file)])
     assert done.exit_code == 1
     found = json.loads(done.stdout)
     assert not found["good"]
     assert any(
-        "arm.gripper and part" in text or "arm.pin and part" in text for text in found["moves"]
+        "arm.gripper and block" in text or "arm.pin and block" in text for text in found["moves"]
     )
 
 

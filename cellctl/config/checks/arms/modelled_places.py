@@ -23,20 +23,19 @@ def unmodelled_issues(
     """``written`` has its place in the base of a robot, ``base_T_place``; none of the fixtures is
     there.
 
-    Nothing is said where the model has fixtures of other shapes than boxes: those are not read
-    here.
+    Nothing is said where the model has fixtures of other shapes than boxes, which are not read
+    here, or none at all: such a model is of the arms alone.
     """
-    if robot not in model.bases or not model.boxes_alone:
+    if robot not in model.bases or not model.boxes_alone or not model.fixtures:
         return
     cell_T_place = pose_from_xyzabc(model.bases[robot]) * base_T_place
     away_mm = {box.name: _away_mm(box, cell_T_place.translation) for box in model.fixtures}
-    name, least_mm = min(away_mm.items(), key=lambda item: item[1], default=("", np.inf))
+    name, least_mm = min(away_mm.items(), key=lambda item: item[1])
     if least_mm <= _NEAR_MM:
         return
-    nearest = f"; {name} is nearest, {least_mm:.0f} mm away" if name else ""
     allowed = (
-        f"a place within {_NEAR_MM:g} mm of a body of fixtures in {model.file}{nearest}. Ways "
-        "through what the model lacks are called free"
+        f"a place within {_NEAR_MM:g} mm of a body of fixtures in {model.file}; {name} is nearest, "
+        f"{least_mm:.0f} mm away. Ways through what the model lacks are called free"
     )
     yield ConfigIssue(written.key, written.value, allowed)
 
