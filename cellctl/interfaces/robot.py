@@ -147,6 +147,14 @@ class Robot(Device):
         """
         return ()
 
+    def least_acceleration_m_s2(self) -> float:
+        """Smallest acceleration of a straight move that the controller can be told; 0: any.
+
+        Asked while connected. Less is refused with ``TargetOutOfBounds`` and never replaced by
+        more: a load that hangs on the arm would swing with it.
+        """
+        return 0.0
+
     async def selection(self) -> PendantSelection:
         """What is chosen at the pendant, asked now; nothing where the controller does not tell.
 

@@ -48,6 +48,10 @@ class RobotLayer(Robot):
         """Those of the robot behind it."""
         return self._robot.round_trips_s()
 
+    def least_acceleration_m_s2(self) -> float:
+        """That of the robot behind it."""
+        return self._robot.least_acceleration_m_s2()
+
     async def selection(self) -> PendantSelection:
         """What is selected at the pendant of the robot behind it."""
         return await self._robot.selection()

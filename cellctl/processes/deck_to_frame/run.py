@@ -14,6 +14,7 @@ from cellctl.errors import CellError
 from cellctl.geometry.pose import MM
 from cellctl.geometry.units import in_mm_deg
 from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
+from cellctl.processes.deck_to_frame.moves.hanging_load import flange_acceleration_m_s2
 from cellctl.processes.deck_to_frame.moves.lift_off import NEAR_SPEED_M_S
 from cellctl.processes.deck_to_frame.poses.part_measurer import (
     HeadGeometry,
@@ -202,12 +203,17 @@ class AssemblyRun:
         inertia_n = SWING_RATIO * self.facts.payload.mass_kg * acceleration_mm_s2 * MM
         force_n = inertia_n + contact_n
         tolerance = WrenchTolerance(force_n, force_n * LEVER_M)
+        main, acceleration_m_s2 = self.cell.main, acceleration_mm_s2 * MM
+        for_load_m_s2 = flange_acceleration_m_s2(
+            main.state().base_T_flange, base_T_flange, flange_T_deck, acceleration_m_s2
+        )
+        slowest_m_s2 = min(acceleration_m_s2, main.least_acceleration_m_s2())
         async with guarded_moves(self.cell.cell, self.cell.arm, flange_T_deck, tolerance) as move:
             await move(
-                self.cell.main.move_linear(
+                main.move_linear(
                     base_T_flange,
                     speed_m_s=speed_mm_s * MM,
-                    acceleration_m_s2=acceleration_mm_s2 * MM,
+                    acceleration_m_s2=max(for_load_m_s2, slowest_m_s2),
                 )
             )
         # Two exposures of a deck that swung differed by 0.13 mm (docs/decisions/0005).

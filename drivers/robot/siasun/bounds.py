@@ -159,9 +159,15 @@ class Bounds:
         """Path speed in mm/s."""
         return self._limited("speed", speed_m_s / MM, self._config.max_speed_mm_s, "mm/s")
 
-    def acceleration_mm_s2(self, acceleration_m_s2: float) -> float:
-        """Path acceleration in mm/s²."""
+    def acceleration_mm_s2(self, acceleration_m_s2: float, *, least_m_s2: float = 0.0) -> float:
+        """Path acceleration in mm/s²; ``least_m_s2`` is the smallest of the job program."""
         limit = self._config.max_acceleration_mm_s2
+        # The job would move with more than it is told. The small term allows for rounding.
+        if acceleration_m_s2 < least_m_s2 * (1.0 - 1e-9):
+            self._refuse(
+                f"acceleration {acceleration_m_s2 / MM:g} mm/s2; the job program knows none below "
+                f"{least_m_s2 / MM:g} (1 % of the ACC in its hello)"
+            )
         return self._limited("acceleration", acceleration_m_s2 / MM, limit, "mm/s2")
 
     def step(self, state: RobotState, base_T_flange: RigidTransform, step_max_mm: float) -> None:

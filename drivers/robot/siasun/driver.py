@@ -19,14 +19,9 @@ from cellctl.errors.robot import (
     StreamNotOffered,
     TargetOutOfBounds,
 )
-from cellctl.geometry.pose import Array
+from cellctl.geometry.pose import MM, Array
 from cellctl.interfaces.robot import RobotState
-from cellctl.interfaces.streaming_robot import (
-    PoseStream,
-    StreamingRobot,
-    StreamLimits,
-    StreamOffer,
-)
+from cellctl.interfaces.streaming_robot import PoseStream, StreamingRobot, StreamLimits, StreamOffer
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.bounds import Bounds
 from drivers.robot.siasun.channels.command_channel import CommandChannel
@@ -129,6 +124,10 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         """Round trips of this session's commands; no question of the protocol does nothing."""
         return tuple(self._command.round_trips_s)
 
+    def least_acceleration_m_s2(self) -> float:
+        """Of a job program that takes percents, one percent."""
+        return self._command.words.least_acceleration_mm_s2 * MM
+
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
         """MOVJ. With a dh table, refused when the flange would leave its box on the way."""
         joints_deg, percent = self._bounds.joints(joints_rad, speed_ratio)
@@ -144,7 +143,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         """MOVL to standstill. With a dh table, refused when the arm cannot follow the way."""
         self._bounds.pose(base_T_flange)
         speed = self._bounds.speed_mm_s(speed_m_s)
-        acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2)
+        least_m_s2 = self.least_acceleration_m_s2()
+        acceleration = self._bounds.acceleration_mm_s2(acceleration_m_s2, least_m_s2=least_m_s2)
         words, written = self._command.words, self._command.written
         return await self._move(
             lambda session, seq: words.move_linear(

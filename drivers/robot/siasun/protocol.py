@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from drivers.robot.siasun.codec.records import StreamFigures
 
 VERSION = "1"
+least_acceleration_mm_s2 = 0.0
+"""A word of SJL/1 says any acceleration."""
 
 
 def accept_hello(session: int) -> bytes:

@@ -32,7 +32,7 @@ class Way:
 
 async def _commands(rig: JobRig) -> None:
     """Each of the accelerations that are written out, a joint move and a release."""
-    for acceleration_m_s2 in (0.05, 0.2, 0.5, 1.0):
+    for acceleration_m_s2 in (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0):
         target = above(rig, 1.0)
         await rig.robot.move_linear(target, speed_m_s=0.05, acceleration_m_s2=acceleration_m_s2)
     joints_rad = rig.robot.state().joints_rad + np.radians([0, 0, 0, 0, 0, 0.2])
@@ -125,7 +125,8 @@ WAYS: dict[str, Way] = {
         _commands,
         {
             "SJLMAIN": STARTED
-            | {"STRAIGHT", "ACC20", "ACC50", "ACC100", "JOINTS", "ARRIVED", "POSE", "REARM"},
+            | {"STRAIGHT", "ACC2", "ACC5", "ACC10", "ACC20", "ACC50", "ACC100", "JOINTS", "ARRIVED"}
+            | {"POSE", "REARM"},
             "SJLSTA": BACKGROUND,
         },
     ),

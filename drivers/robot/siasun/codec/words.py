@@ -11,6 +11,11 @@ from drivers.robot.siasun.codec.records import Hello
 class Words(Protocol):
     """Records as bytes. Arguments as in ``protocol.py``."""
 
+    @property
+    def least_acceleration_mm_s2(self) -> float:
+        """Smallest acceleration of a straight move that the job program carries out as it is told;
+        0: any."""
+
     def accept_hello(self, session: int) -> bytes:
         """Accept a robot and number its session."""
 

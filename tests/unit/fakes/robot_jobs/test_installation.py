@@ -16,7 +16,7 @@ def text(job: str) -> str:
 @pytest.mark.parametrize("job", JOBS)
 def test_the_hello_names_the_site(job: str) -> None:
     adapted = SITE.applied(text(job), job)
-    assert ",T90A-1,2.1,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.2500,DEADMAN=1000,ACC=1000.0000;" in adapted
+    assert ",T90A-1,2.2,EUL=ZYX,UNIT=MMDEG,STEPMAX=0.2500,DEADMAN=1000,ACC=1000.0000;" in adapted
     assert "SR500A" not in adapted
 
 

@@ -15,6 +15,12 @@ class CompactWords:
 
     acceleration_max_mm_s2: float
 
+    @property
+    def least_acceleration_mm_s2(self) -> float:
+        """1 %: the job program moves with whole percents that are written out in it, and with its
+        smallest where it is told less."""
+        return self.acceleration_max_mm_s2 / 100.0
+
     def accept_hello(self, session: int) -> bytes:
         """Accept a robot and give it the number of its session."""
         return _short("OKAY", session, 0)

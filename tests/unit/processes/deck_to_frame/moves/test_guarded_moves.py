@@ -7,7 +7,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import RigidTransform
+from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
@@ -106,6 +106,29 @@ def test_free_moves_at_full_speed_stay_within_their_limits() -> None:
     for sent, reached in arrivals.seen:
         np.testing.assert_allclose(reached.translation, sent.translation, atol=1e-5)
     np.testing.assert_allclose(moved, [0, 0, -0.015], atol=1e-5)
+
+
+def test_a_small_turn_does_not_swing_the_deck_that_hangs_below() -> None:
+    # 0.01 degrees take the deck 0.09 mm aside, and the flange nowhere.
+    world = MatingCell.drawn(8, stiffness_n_m=1e6, stop_latency_s=LATENCY_S)
+    run, above = run_on(world), raised(world, 0.001)
+    turn = RigidTransform.from_components(
+        [1e-5, 0.0, 0.0], Rotation.from_rotvec([np.radians(0.01), 0.0, 0.0])
+    )
+    felt_n: list[float] = []
+
+    def advance(to_s: float) -> None:
+        world.advance(to_s)
+        felt_n.append(float(world.world.sensor_wrench("force", world.world.time_s)[1]))
+
+    async def up_and_turn() -> None:
+        await run.move_near_frame(above, world.flange_T_deck)
+        felt_n.clear()
+        await run.move_near_frame(above * turn, world.flange_T_deck)
+
+    run_simulated(world.start_s, advance, up_and_turn)
+    swing_n = np.abs(np.array(felt_n) - felt_n[0]).max()
+    assert swing_n < 12.0, "28 N with the acceleration of the recipe, where 28.2 N are the limit"
 
 
 def test_a_frame_that_stands_too_high_stops_the_way_down() -> None:
