@@ -4,6 +4,7 @@ There is no wire and no clock: the mating is that of `benchmarks.mating`, but it
 deck where the loop has left it, and with the pose and the uncertainty that the loop has found.
 """
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
 from typing import Any, Self
@@ -12,7 +13,7 @@ import numpy as np
 
 from benchmarks.decks.deck_range import Deck, payload_kg, scenario_of, setting_of
 from benchmarks.metrology.fake_station import SCENARIO
-from benchmarks.metrology.loop import CONFIG, Setting, follow_loop
+from benchmarks.metrology.loop import CONFIG, LoopEnd, Setting, follow_loop
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.config.load import load_cell
 from cellctl.errors.base import CellError
@@ -23,6 +24,9 @@ from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
 from cellctl.processes.deck_to_frame.mating.planned_settings import mating_settings
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, MatingProgress, MatingResult
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
+from cellctl.processes.deck_to_frame.poses.part_measurer import deck_in_frame
+from cellctl.processes.deck_to_frame.poses.seat_error import seat_error
+from cellctl.processes.deck_to_frame.steps.verify import unproven_seat
 from fakes.demo.processes.deck_to_frame import LIMITED
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from tests.rigs.mating.cell import MatingCell
@@ -115,10 +119,12 @@ def run_chain(deck: Deck, shipped: Shipped, seed: int) -> Figures:
     )
     # Nothing was commissioned: the recipe's bounds count, as on a new cell.
     settings = mating_settings(shipped.sensor, setting.recipe, Commissioned(), payload_kg(deck))
-    return _mated(cell, settings, known)
+    return _mated(cell, settings, known, lambda: _unproven(end, setting))
 
 
-def _mated(cell: MatingCell, settings: MatingSettings, known: Figures) -> Figures:
+def _mated(
+    cell: MatingCell, settings: MatingSettings, known: Figures, unproven: Callable[[], str]
+) -> Figures:
     payload = cell.world.payload
     payload.peak_contact_force_n = 0.0
     try:
@@ -138,7 +144,26 @@ def _mated(cell: MatingCell, settings: MatingSettings, known: Figures) -> Figure
     )
     if not result.verdict.seated:
         return known
+    if why := unproven():
+        return replace(known, text=why)
     return replace(known, outcome=Outcome.FALSE if known.beyond else Outcome.GOOD)
+
+
+def _unproven(end: LoopEnd, setting: Setting) -> str:
+    """What a look at the seated deck does not prove, judged as step 60 of a run does it; empty for
+    a part that is called good. As there, a second look takes all frames."""
+    recipe, settings = setting.recipe, setting.recipe.pose_correction
+    thickness_m = recipe.deck_thickness_mm * MM
+    found: list[str] = []
+    for frames in (settings.frames, settings.max_frames):
+        predicted = setting.base_T_c1.pose.inv() * end.station.base_T_flange() * end.flange_T_deck
+        more = settings.model_copy(update={"frames": frames})
+        deck, _ = end.station.measure(setting.deck, predicted, more, setting.thresholds)
+        M_T_D = deck_in_frame(end.frame, deck, setting.geometry, settings.method).cautious
+        seat = seat_error(M_T_D, thickness_m, setting.deck.holes)
+        if not (found := list(unproven_seat(seat, recipe))):
+            break
+    return "; ".join(found)
 
 
 def _run(cell: MatingCell, plan: MatingPlan) -> tuple[MatingResult, float]:

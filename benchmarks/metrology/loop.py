@@ -42,6 +42,7 @@ from cellctl.processes.deck_to_frame.poses.pose_correction import (
 )
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 from cellctl.vision.features.feature_file import FeatureFile, read_features
+from cellctl.vision.registration.part_pose import PartPose
 from fakes.imperfections import parsed_scale
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 
@@ -87,6 +88,8 @@ class LoopEnd:
     """A deck at its stand-off after the loop, and what is known of it."""
 
     station: FakeStation
+    frame: PartPose
+    """As the heads measured it before the loop."""
     M_T_D: UncertainPose
     flange_T_deck: RigidTransform
     converged: bool
@@ -132,7 +135,7 @@ def follow_loop(setting: Setting, scenario: DeckScenario, seed: int) -> LoopEnd:
         if judgement.converged:
             break
         commanded = next_target(commanded, target, M_T_D.pose)
-    return LoopEnd(station, M_T_D, flange_T_deck, judgement.converged, tuple(looks))
+    return LoopEnd(station, frame, M_T_D, flange_T_deck, judgement.converged, tuple(looks))
 
 
 def _look(

@@ -28,7 +28,7 @@ async def verify(seat: Seated) -> Verified:
     run = seat.run
     async with ContactRecorder(run.cell.main, run.cell.guard, lambda _: 0.0) as contact:
         measurement, found = await _look(seat)
-        if list(_unproven(found, run.recipe)):
+        if list(unproven_seat(found, run.recipe)):
             await run.recorder.measurement("seated", measurement)
             measurement, found = await _look(seat, run.recipe.pose_correction.max_frames)
     force_n = _greatest_n(contact.curve())
@@ -36,7 +36,7 @@ async def verify(seat: Seated) -> Verified:
     await run.recorder.verification(found, run.recipe, measurement, force_n)
     if pins := pin_holes(run.facts.deck_features.holes):
         await run.recorder.gauge_holes(pins, run.recipe)
-    if unproven := list(_unproven(found, run.recipe)):
+    if unproven := list(unproven_seat(found, run.recipe)):
         raise SeatedOffPosition("; ".join(unproven))
     # Written so that a force that is not known is refused.
     if not force_n <= (limit_n := run.recipe.mating.limit_force_n):
@@ -72,8 +72,8 @@ async def _look(seat: Seated, frames: int | None = None) -> tuple[PartMeasuremen
     return measurement, seat_error(M_T_D, thickness_m, run.facts.deck_features.holes)
 
 
-def _unproven(found: SeatError, recipe: DeckRecipe) -> Iterator[str]:
-    """What is not surely within its limit, in words; a value that is not a number is not."""
+def unproven_seat(found: SeatError, recipe: DeckRecipe) -> Iterator[str]:
+    """What of a seat is not surely within its limit, in words; what is not a number is not."""
     for name, value in found.offsets_mm.items():
         uncertainty_mm = found.offset_uncertainties_mm[name]
         if not value + uncertainty_mm <= recipe.seated_limit_mm:
