@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from cellctl.errors.records import StoreUnavailable
-from cellctl.records.entered.gauges import judge_gauge, part_verdict
+from cellctl.records.entered.gauges import PART_VERDICT, judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
 from cellctl.records.figures import on_pages, verdicts
 from cellctl.records.outcome import outcome
@@ -40,7 +40,7 @@ class ArchiveReader:
         Raises ``StoreUnavailable``.
         """
         found = await self.listed(wanted, limit)
-        return [_head(one.head) | {"ended_as": _ended_as(one)} for one in found]
+        return [_plain(one.for_programs()) | {"ended_as": _ended_as(one)} for one in found]
 
     async def run(self, number: int) -> dict[str, Any]:
         """One run with figures, passes, phases, alarms, gauges and names of its files.
@@ -59,7 +59,7 @@ class ArchiveReader:
             ]
             return {
                 "head": _head(record.head),
-                "part": part_verdict(record),
+                PART_VERDICT: part_verdict(record),
                 "figures": [
                     _plain(asdict(on_pages(one))) | {"verdict": said.get(one.key)}
                     for one in record.newest_figures.values()

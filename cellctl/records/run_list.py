@@ -8,7 +8,7 @@ import json
 import sqlite3
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import closing
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,7 +17,13 @@ from cellctl.errors.records import StoreUnavailable
 from cellctl.records.database.missing_store import missing_store
 from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION
-from cellctl.records.entered.gauges import GAUGE_HOLES, beyond_limit, hole_limits
+from cellctl.records.entered.gauges import (
+    GAUGE_HOLES,
+    PART_VERDICT,
+    beyond_limit,
+    hole_limits,
+    with_gauges,
+)
 from cellctl.records.entries import RunHead, RunResult
 from cellctl.records.run_filter import RunFilter
 
@@ -36,6 +42,10 @@ class ListedRun:
     head: RunHead
     spoilt: bool
     """A gauge has turned its good part into a bad one."""
+
+    def for_programs(self) -> dict[str, Any]:
+        """The head as plain data, with the verdict on the part."""
+        return asdict(self.head) | {PART_VERDICT: with_gauges(self.head.result, spoilt=self.spoilt)}
 
 
 def listed_runs(folder: Path, limit: int, wanted: RunFilter = ALL) -> list[ListedRun]:

@@ -83,9 +83,7 @@ def runs(
     with opened_fleet(store, password_file) as fleet:
         found = recall.runs(fleet, wanted, limit, cell or None)
     if as_json:
-        rows = [
-            {"cell": one.cell, "spoilt": one.run.spoilt} | asdict(one.run.head) for one in found
-        ]
+        rows = [{"cell": one.cell} | one.run.for_programs() for one in found]
         typer.echo(as_plain(rows))
     elif found:
         console_of_tables().print(_runs(found))

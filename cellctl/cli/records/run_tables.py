@@ -11,7 +11,12 @@ from rich.text import Text
 
 from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
-from cellctl.records.entered.gauges import gauge_limits, judge_gauge, part_verdict
+from cellctl.records.entered.gauges import (
+    for_programs,
+    gauge_limits,
+    judge_gauge,
+    part_verdict,
+)
 from cellctl.records.entered.notes import note_words, notes_of
 from cellctl.records.entered.said_by import gauge_entries, measured_by, said_by
 from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
@@ -46,7 +51,7 @@ def show_record(
         looked_up = {} if before is None else {"runs_before": before}
         beside: Mapping[str, Sequence[Any]] = {"notes": notes, **looked_up}
         plain = {name: [asdict(one) for one in some] for name, some in beside.items()}
-        typer.echo(as_plain(asdict(record) | plain))
+        typer.echo(as_plain(asdict(record) | for_programs(record, audit) | plain))
         return
     console = console_of_tables()
     console.print(run_table([record.head], console))

@@ -1,6 +1,5 @@
 """`cellctl runs`: look into the run store; enter what a person measured."""
 
-from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -68,7 +67,7 @@ def list_runs(
     )
     found = listed_runs(store_folder(data_dir), limit, wanted)
     if as_json:
-        typer.echo(as_plain([asdict(one.head) | {"spoilt": one.spoilt} for one in found]))
+        typer.echo(as_plain([one.for_programs() for one in found]))
         return
     if not found:
         typer.echo("no runs")

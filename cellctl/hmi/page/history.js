@@ -122,7 +122,7 @@ async function detail(root, number) {
   try {
     const run = await ask(`runs/${number}`);
     const images = run.files.filter((file) => file.media_type.startsWith("image/"));
-    place.replaceChildren(h("h2", {}, t("run", number), ` · ${run.head.serial} · `, verdict(run.part)),
+    place.replaceChildren(h("h2", {}, t("run", number), ` · ${run.head.serial} · `, verdict(run.part_verdict)),
       run.head.result === "interrupted" ? h("p", { class: "bad" }, t("interrupted_note")) : "",
       h("p", {}, `${time(run.head.started)} – ${time(run.head.ended)} · ${run.head.operator || "—"} · ${run.head.software}`, run.head.simulated ? ` · ${t("simulated")}` : "", " · ", seal(run.as_sealed)),
       run.head.fault ? h("p", { class: "bad" }, run.head.fault) : "",

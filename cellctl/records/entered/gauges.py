@@ -4,13 +4,18 @@ A process records the document ``GAUGE_HOLES`` in each run whose part can be gau
 ``{"P1": {"least_mm": 5.8, "most_mm": 6.0}, …}``. Runs of earlier versions have none.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
 
 from cellctl.errors.records import GaugeRefused, ValueRefused
-from cellctl.records.entries import DRY_RUN, Gauge, RunRecord, RunResult, Verdict
+from cellctl.records.entered.said_by import gauge_entries, measured_by
+from cellctl.records.entries import DRY_RUN, AuditEntry, Gauge, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
 
 GAUGE_HOLES = "gauge_holes"
+PART_VERDICT = "part_verdict"
+"""Key of the verdict on the part wherever programs are told of a run."""
 _RANGE_MM = Limit(0.5, 50.0)
 """Diameters that plug gauges for pin holes have; anything else is a slip of the keyboard."""
 _NO_PART = frozenset({RunResult.STOPPED, RunResult.ABORTED, RunResult.INTERRUPTED})
@@ -46,9 +51,28 @@ def part_verdict(record: RunRecord) -> str | None:
     # it.
     newest_mm = {gauge.hole: gauge.diameter_mm for gauge in record.gauges}
     spoilt = beyond_limit(gauge_limits(record), newest_mm)
-    if record.head.result == RunResult.GOOD and spoilt:
-        return RunResult.BAD
-    return record.head.result
+    return with_gauges(record.head.result, spoilt=spoilt)
+
+
+def with_gauges(result: str | None, *, spoilt: bool) -> str | None:
+    """Verdict on the part of a run with this result; ``spoilt``: a gauge is beyond its limit."""
+    return RunResult.BAD if result == RunResult.GOOD and spoilt else result
+
+
+def for_programs(record: RunRecord, audit: Sequence[AuditEntry]) -> dict[str, Any]:
+    """What programs are told beside the record: ``part_verdict``, and each gauge with its verdict
+    and who measured and typed it; ``audit`` is the whole log."""
+    entries = gauge_entries(record.head.number, audit)
+
+    def told(gauge: Gauge) -> dict[str, Any]:
+        verdict, who = judge_gauge(record, gauge), measured_by(gauge, entries)
+        return asdict(gauge) | {"verdict": verdict, "measured_by": who}
+
+    return {
+        PART_VERDICT: part_verdict(record),
+        "gauges": [told(gauge) for gauge in record.gauges],
+        "gauge_history": [told(gauge) for gauge in record.gauge_history],
+    }
 
 
 def require_plausible(hole: str, diameter_mm: float, source: str) -> None:

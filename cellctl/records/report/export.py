@@ -2,7 +2,7 @@
 
 import base64
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path, PurePosixPath
@@ -11,9 +11,9 @@ from typing import Any
 from cellctl.errors.config import OutputNotWritten
 from cellctl.errors.records import ExportFolderTaken, ValueRefused
 from cellctl.files.atomic_files import write_durably
-from cellctl.records.entered.gauges import part_verdict
+from cellctl.records.entered.gauges import for_programs
 from cellctl.records.entered.notes import notes_of
-from cellctl.records.entries import RunRecord
+from cellctl.records.entries import AuditEntry, RunRecord
 from cellctl.records.files.artefacts import CELL_FILE
 from cellctl.records.report.acceptance.runs_before import runs_before
 from cellctl.records.report.pdf import to_pdf
@@ -55,9 +55,10 @@ def export_run(
         addresses = _inside(store, record)
     view = _view(store, record, pages, addresses)
     _write(folder / REPORT, render(view).encode())
-    notes = [asdict(note) for note in notes_of(number, store.audit_log())]
+    audit = store.audit_log()
+    notes = [asdict(note) for note in notes_of(number, audit)]
     plain = {
-        **document(record),
+        **document(record, audit),
         "notes": notes,
         "runs_before": [asdict(one) for one in runs_before(store, record.head)],
         "ledger_head": str(view.ledger_head),
@@ -115,10 +116,10 @@ def _sources(store: RunStore, record: RunRecord, addresses: Mapping[str, str]) -
     )
 
 
-def document(record: RunRecord) -> Mapping[str, Any]:
-    """A run as plain data: the head's fields beside the lists."""
+def document(record: RunRecord, audit: Sequence[AuditEntry]) -> Mapping[str, Any]:
+    """A run as plain data: the head's fields beside the lists; ``audit`` is the whole log."""
     fields = asdict(record)
-    whole = fields.pop("head") | fields | {"part_verdict": part_verdict(record)}
+    whole = fields.pop("head") | fields | for_programs(record, audit)
     plain: dict[str, Any] = json.loads(json.dumps(whole, default=_plain))
     return plain
 

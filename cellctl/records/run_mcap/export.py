@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
@@ -47,11 +48,11 @@ def export_mcap(
     What is damaged or was not recorded is left out and named in the result, in the metadata and
     in the log of the file. Raises ``RunUnknown`` and ``RecordNotWritten``.
     """
-    record = store.run(number)
+    record, audit = store.run(number), store.audit_log()
     used = set(record.head.calibration_ids.values())
     sources = RunSources(
         record,
-        during(record, store.audit_log()),
+        during(record, audit),
         [one for one in store.calibrations() if one.id in used],
         store.artefacts,
     )
@@ -60,7 +61,7 @@ def export_mcap(
         path.parent.mkdir(parents=True, exist_ok=True)
         with part.open("wb") as stream:
             writer = RunFileWriter(stream)
-            _write(writer, sources, form)
+            _write(writer, sources, document(record, audit), form)
         part.replace(path)
     except BaseException as error:
         # Also where somebody has interrupted it: hundreds of megabytes that nobody looks for. The
@@ -73,7 +74,9 @@ def export_mcap(
     return ExportedRun(path, dict(writer.written), frozenset(writer.frames), tuple(sources.missing))
 
 
-def _write(writer: RunFileWriter, sources: RunSources, form: ImageForm) -> None:
+def _write(
+    writer: RunFileWriter, sources: RunSources, run_json: Mapping[str, Any], form: ImageForm
+) -> None:
     record = sources.record
     messages = sorted(_messages(sources, form), key=lambda message: message.time_ns)
     writer.metadata(RUN, _head(record))
@@ -85,7 +88,7 @@ def _write(writer: RunFileWriter, sources: RunSources, form: ImageForm) -> None:
     if sources.missing:
         lines = {f"{index:03d}": text for index, text in enumerate(sources.missing, start=1)}
         writer.metadata(MISSING, lines)
-    whole = json.dumps(document(record), indent=1).encode()
+    whole = json.dumps(run_json, indent=1).encode()
     writer.attach("run.json", record.head.ended or record.head.started, "application/json", whole)
     writer.finish()
 

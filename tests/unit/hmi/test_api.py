@@ -226,8 +226,10 @@ def test_runs_are_found_by_serial_result_and_calibration(page: Client) -> None:
         assert found == numbers, query
     for wrong in ("limit=0", "since=2026-11-24T12:00:00", "fault=x", "order=1", f"before={10**20}"):
         problem(page.get(f"runs?{wrong}"), 422, "invalid")
+    listed = {run["number"]: run for run in page.get("runs").json["runs"]}
+    assert [listed[number]["part_verdict"] for number in (1, 2)] == ["good", "aborted"]
     run = page.get("runs/1").json
-    assert (run["head"]["serial"], run["part"], run["sealed"]) == ("SAT-1", "good", True)
+    assert (run["head"]["serial"], run["part_verdict"], run["sealed"]) == ("SAT-1", "good", True)
     assert run["phases"][0]["label"] == "measure"
     for unknown in (99, 10**20):
         problem(page.get(f"runs/{unknown}"), 404, "fault-804")

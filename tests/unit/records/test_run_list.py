@@ -51,6 +51,7 @@ def test_a_gauge_spoils_what_it_spoils_in_the_report(
     (found,) = listed_runs(store.path, 9)
     assert found.spoilt == (part_verdict(store.run(run)) == RunResult.BAD)
     assert found.spoilt == (bool(diameters_mm) and diameters_mm[-1] < 5.8)
+    assert found.for_programs()["part_verdict"] == part_verdict(store.run(run))
 
 
 def test_where_there_is_no_store_none_is_made(tmp_path: Path) -> None:

@@ -83,6 +83,10 @@ def test_a_part_that_a_gauge_has_spoilt_is_marked(url: str, fleet: Fleet) -> Non
     listed = run("runs", url=url).stdout
     assert re.search(r"SAT-0043.*good, bad by gauge", listed)
     assert not re.search(r"SAT-0042.*bad by gauge", listed)
+    told = {one["serial"]: one for one in json.loads(run("runs", "--json", url=url).stdout)}
+    assert (told["SAT-0043"]["result"], told["SAT-0043"]["part_verdict"]) == ("good", "bad")
+    shown = json.loads(run("show", SOUTH, str(gauged), "--json", url=url).stdout)
+    assert shown["part_verdict"] == "bad"
 
 
 def test_cells_show_and_verify(url: str, fleet: Fleet) -> None:

@@ -86,6 +86,28 @@ def test_the_report_and_show_say_bad(store: RunStore, run: int, tmp_path: Path) 
     assert "the part is bad: a plug gauge is beyond its limit" in shown
 
 
+def test_programs_are_told_the_same_everywhere(store: RunStore, run: int, tmp_path: Path) -> None:
+    where = ["--data-dir", str(store.path)]
+    for hole, mm in (("P5", "5.70"), ("P1", "5.95")):
+        words = ["--hole", hole, "--mm", mm, "--source", "anna"]
+        assert CliRunner().invoke(app, ["gauge", str(run), *words, *where]).exit_code == 0
+    export_run(store, run, tmp_path)
+    exported = json.loads((tmp_path / "run.json").read_text(encoding="utf-8"))
+    (listed,) = json.loads(CliRunner().invoke(app, ["list", "--json", *where]).stdout)
+    shown = json.loads(CliRunner().invoke(app, ["show", str(run), "--json", *where]).stdout)
+    assert {told["part_verdict"] for told in (exported, listed, shown)} == {"bad"}
+    assert (exported["result"], listed["result"], shown["head"]["result"]) == ("good",) * 3
+    assert "spoilt" not in listed
+    anna = f"anna, typed by {terminal_user()}"
+    for told in (exported, shown):
+        for name in ("gauges", "gauge_history"):
+            assert {gauge["hole"]: gauge["verdict"] for gauge in told[name]} == {
+                "P5": "fail",
+                "P1": "pass",
+            }
+            assert {gauge["measured_by"] for gauge in told[name]} == {anna}
+
+
 def test_a_hole_that_there_is_not_is_refused(store: RunStore, run: int) -> None:
     with pytest.raises(GaugeRefused, match="no pin hole P9; it has P1, P5"):
         store.set_gauge(run, "P9", 5.95, "OP-7")
