@@ -24,6 +24,7 @@ from cellctl.config.model_file import model_path
 from cellctl.config.process_definition import installed_processes, process_definition
 from cellctl.config.roles import lacking_roles
 from cellctl.files.hand_written import read_hand_written
+from cellctl.planning.model.read_document import document_issues
 
 if TYPE_CHECKING:
     from cellctl.cli.connecting.answer import Answer
@@ -64,7 +65,7 @@ def check(
     the model of the cell, and the exit code is 1 also when one of them is not good.
     """
     examined = examine_before_commissioning(cell_file)
-    found = [*examined.errors, *_left_open(cell_file)]
+    found = [*examined.errors, *_left_open(cell_file), *_of_model(cell_file)]
     remarks = [] if found else examined.remarks
     cell = None if found else examined.cell
     console = console_of_lines()
@@ -194,6 +195,12 @@ def _left_open(cell_file: Path) -> Iterator[ConfigIssue]:
     for number, key in left_open(read_hand_written(cell_file)).items():
         allowed = "the value of this cell, and the mark taken away"
         yield ConfigIssue(key, f"{FILL_IN} (mark of the template)", allowed, line=number)
+
+
+def _of_model(cell_file: Path) -> list[ConfigIssue]:
+    """A model that cannot be read: nothing of the cell file was held against it."""
+    model = model_path(cell_file)
+    return document_issues(model) if model.exists() else []
 
 
 def _never_checked(cell: CellConfig) -> Iterator[str]:

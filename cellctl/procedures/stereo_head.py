@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.boards.board import BoardView, CalibrationBoard
 from cellctl.calibration.store.kind import CalibrationKind
+from cellctl.cell.image_faults import naming
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.errors.base import CellError
 from cellctl.errors.calibration import BoardNotFound
@@ -58,9 +59,10 @@ async def calibrate_head(
             )
             # In the order of OpenCV, width first; arrays have the height first.
             image_size = (pair.left.shape[1], pair.left.shape[0])
-            view = await workers.run(
-                detect_view, BoardImages(view_name(number), pair.left, pair.right), board
-            )
+            with naming(station.name):
+                view = await workers.run(
+                    detect_view, BoardImages(view_name(number), pair.left, pair.right), board
+                )
         # A later view without the board is no fault: at the borders of the field it may be cut off.
         # What all views together must cover, the solver checks. The first is taken from the taught
         # pose, which shows it whole: without it nothing is gained by the minutes of the others.

@@ -80,7 +80,7 @@ PROTECTIVE_TIMES = {
         0.1, 1.0, "the contact goes on without a force for so long; at 1 mm/s 10 N at 100 N/mm"
     ),
     "heartbeat_timeout_s": ProtectiveTime(
-        5.0, 5.0, "the cell works for so long without its line, whose PLC beats once a second"
+        5.0, 5.0, "the cell works for so long without its line, whose PLC beats twice a second"
     ),
 }
 

@@ -1,27 +1,20 @@
 """Reads the model of a cell, and says everything that is wrong with it."""
 
 import math
-import tomllib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
-from pydantic import ValidationError
 from scipy.spatial.transform import RigidTransform, Rotation
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.document.findings import model_issues, validated
-from cellctl.config.document.lines import key_lines, line_of
 from cellctl.errors.config import (
     ArmNotDescribed,
     ConfigInvalid,
-    ConfigUnreadable,
     HeadNotDescribed,
     SizeImplausible,
 )
-from cellctl.files.hand_written import read_hand_written
 from cellctl.geometry.pose import MM, Array, pose_from_xyzabc
 from cellctl.planning.model.document import (
     BodyKeys,
@@ -30,6 +23,7 @@ from cellctl.planning.model.document import (
     LinkBodyKeys,
     ModelDocument,
 )
+from cellctl.planning.model.read_document import read_document
 from cellctl.planning.model.shapes import BoxShape, CapsuleShape, Shape
 from cellctl.planning.model.surface import read_surface
 from cellctl.planning.scene.arm import PlannedArm, planned_arm
@@ -59,7 +53,7 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
     Raises ``ConfigUnreadable``, ``ConfigInvalid``, ``ArmNotDescribed``, ``MeshNotUsable``,
     ``SizeImplausible``.
     """
-    document = _document(path)
+    document = read_document(path)
     arms = {name: _arm(cell, document, name) for name in document.robots}
     _check_bases(arms)
     solids = tuple(_solids(document, path.parent))
@@ -68,29 +62,6 @@ def read_model(cell: CellConfig, path: Path, folder: Path) -> CellScene:
     approaches = {frozenset(near.bodies): near.clearance_mm * MM for near in document.approaches}
     heads = {name: _head(cell, name, keys) for name, keys in document.stereo_cameras.items()}
     return CellScene(cell, folder, arms, solids, approaches, heads)
-
-
-def _document(path: Path) -> ModelDocument:
-    try:
-        text = read_hand_written(path)
-        raw = tomllib.loads(text)
-    except FileNotFoundError as error:
-        raise ConfigUnreadable(
-            f"{path}: this cell has no model yet. Write one: where its arms stand, their bodies "
-            "and what stands around them (docs/planning.md); config/deck.model.toml, "
-            "antenna.model.toml and insertion-pin.model.toml show how"
-        ) from error
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
-        raise ConfigUnreadable(f"{path}: {error}") from error
-    try:
-        return validated(ModelDocument, raw)
-    except ValidationError as error:
-        lines = key_lines(text)
-        found = [
-            str(replace(issue, line=line_of(issue.key, lines)))
-            for issue in model_issues("", error, ModelDocument, raw)
-        ]
-        raise ConfigInvalid(f"{path}: {'; '.join(found)}") from error
 
 
 def _arm(cell: CellConfig, document: ModelDocument, name: str) -> PlannedArm:

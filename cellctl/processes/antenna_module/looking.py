@@ -11,6 +11,7 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.calibration.solvers.pose_average import average
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
+from cellctl.cell.image_faults import naming
 from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.cell.standstill import require_unmoved
 from cellctl.clock import utc_at
@@ -102,7 +103,8 @@ class Eyes:
                 self.recorder.raw_image(file, image)
             time_s = taken.time_s
             images.append(image)
-            found.append(await self.workers.run(measure, image))
+            with naming(camera.name):
+                found.append(await self.workers.run(measure, image))
         require_unmoved("the arm", self.arm.robot, state.base_T_flange)
         return Seen(
             tuple(found), tuple(images), state.base_T_flange, state.joints_rad, time_s, name

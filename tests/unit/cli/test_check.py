@@ -152,3 +152,31 @@ def test_programs_are_told_what_was_not_checked(tmp_path: Path) -> None:
     assert lines
     assert told["not_checked_yet"] == lines
     assert told["not_checked"] == []
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "number", "said"),
+    [
+        ("[robots.main]", "[robots.main", 101, "(at line "),
+        ("rated_deg_s", "rated_dgs_s", 102, "rated_deg_s"),
+    ],
+)
+def test_a_model_that_cannot_be_read_is_an_error_of_the_cell(
+    tmp_path: Path, old: str, new: str, number: int, said: str
+) -> None:
+    """What the cell file would be held against is not there, and nothing else says so."""
+    path = written(tmp_path, "deck.toml", "", "")
+    text = (CONFIG / "deck.model.toml").read_text()
+    line = text[: text.index(old)].count("\n") + 1
+    model = path.with_suffix(".model.toml")
+    model.unlink()  # a link to the shipped one
+    model.write_text(text.replace(old, new, 1))
+    done = CliRunner().invoke(whole_app(), ["check", str(path)])
+    assert done.exit_code == 1
+    assert "good" not in done.stdout
+    assert f"F{number} {model.name}" in done.stdout
+    assert f"line {line}" in done.stdout
+    assert said in done.stdout
+    told = json.loads(CliRunner().invoke(whole_app(), ["check", "--json", str(path)]).stdout)
+    assert not told["good"]
+    assert {one["number"] for one in told["errors"]} == {number}

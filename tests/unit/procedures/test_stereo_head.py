@@ -7,6 +7,7 @@ import pytest
 
 from cellctl.errors.calibration import BoardNotFound
 from cellctl.errors.link import ReplyTimeout
+from cellctl.errors.vision import ImageBlack
 from cellctl.geometry.pose import MM
 from tests.unit.procedures.rig import ProcedureRig
 
@@ -90,3 +91,14 @@ async def test_a_fault_in_the_middle_leaves_the_head_there_and_says_where(
     assert len(rig.bench.cell.aux_1.moves) == 1 + 3, "to the board, and to three views"
     (note,) = caught.value.__notes__
     assert note.startswith("head_1 was left at or near view 3 of 24, tilted over the board")
+
+
+async def test_a_view_that_cannot_be_measured_names_its_head(rig: ProcedureRig) -> None:
+    Solver(rig)
+
+    def black(*_: object) -> None:
+        raise ImageBlack("view 1 left: 99.9 % of the pixels are below level 12")
+
+    rig.answer(detect_view=black)
+    with pytest.raises(ImageBlack, match="head_1, view 1 left"):
+        await rig.run(101)

@@ -9,6 +9,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
 from cellctl.cell.gather import gather_or_cancel
+from cellctl.cell.image_faults import naming
 from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.cell.standstill import require_unmoved
 from cellctl.cell.stereo_station import StereoStation
@@ -211,15 +212,16 @@ class PartMeasurer:
         frame = 1 + sum(one.head == head for one in self.seen)
         place, seen = len(self.seen), SeenPair(frame, head, pair)
         self.seen.append(seen)
-        found = await self._cell.workers.run(
-            measure_pair,
-            pair.left,
-            pair.right,
-            model,
-            holes,
-            camera_T_part=camera_T_part,
-            method=self._method,
-        )
+        with naming(station.name):
+            found = await self._cell.workers.run(
+                measure_pair,
+                pair.left,
+                pair.right,
+                model,
+                holes,
+                camera_T_part=camera_T_part,
+                method=self._method,
+            )
         self.seen[place] = replace(seen, found=found)
         return pair, found
 

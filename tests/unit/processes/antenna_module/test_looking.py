@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.errors.vision import ImageBlack
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.camera import Camera, CameraImage, PixelFormat
 from cellctl.interfaces.exposure import ExposureRecord
@@ -108,3 +109,16 @@ def test_frames_of_a_scene_that_moved_meanwhile_are_not_combined() -> None:
     np.testing.assert_array_equal(still.covariance, seen(0.0).covariance)
     with pytest.raises(LooksDisagree, match=r"20\.0 µm off"):
         combined((seen(0.0), seen(0.0), seen(30e-6)))
+
+
+async def test_an_image_that_cannot_be_measured_names_its_camera(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(looking, "settle", AsyncMock())
+    image = CameraImage(np.zeros((4, 4), np.uint8), PixelFormat.MONO8, 0.0, 1)
+    camera = Mock(grab=AsyncMock(return_value=image))
+    camera.name = "over_tray"
+    workers = Mock(run=AsyncMock(side_effect=ImageBlack("image: brightest grey value is 0")))
+    with pytest.raises(ImageBlack) as raised:
+        await Eyes(Mock(), workers, None, frames=1).look("tray", cast(Camera, camera), np.sum)
+    assert raised.value.detail == "over_tray, image: brightest grey value is 0"

@@ -9,7 +9,7 @@ import pytest
 from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.errors.link import ReplyTimeout, StaleData
 from cellctl.errors.robot import HeadMoved
-from cellctl.errors.vision import HoleMissing
+from cellctl.errors.vision import HoleMissing, ImageBlack
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces import StereoCamera
@@ -219,3 +219,14 @@ async def test_faults_of_camera_and_vision_come_through(bench: Bench, eyes: Eyes
     eyes.during = miss
     with pytest.raises(HoleMissing):
         await measured(bench)
+
+
+async def test_an_image_that_cannot_be_measured_names_its_head(bench: Bench, eyes: Eyes) -> None:
+    def dark() -> None:
+        if len(eyes.calls) == 2:
+            raise ImageBlack("left: brightest grey value is 4")
+
+    eyes.during = dark
+    with pytest.raises(ImageBlack) as raised:
+        await measured(bench)
+    assert raised.value.detail == "head_2, left: brightest grey value is 4"
