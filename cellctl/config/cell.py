@@ -1,6 +1,7 @@
 """The whole cell file."""
 
 import ipaddress
+import os
 from collections.abc import Mapping
 from typing import Annotated, Literal, Self
 from urllib.parse import parse_qsl, urlsplit
@@ -25,6 +26,10 @@ from cellctl.config.recipe import Recipe
 from cellctl.config.zones import ZoneConfig
 
 _SECRETS = frozenset({"password", "passfile", "sslpassword"})
+
+
+MOST_SOCKET_BYTES = 107
+"""Longest path of a socket: the kernel's limit (``sun_path``, 108 bytes with the final zero)."""
 
 
 class Plc(Section):
@@ -81,6 +86,13 @@ class LocalApi(Section):
     page_user: str = "cellctl-hmi"
     """The user of the operator page's process; it may say which person asks. The daemon's own user
     may, too."""
+
+    @field_validator("socket")
+    @classmethod
+    def _fits_the_kernel(cls, value: str) -> str:
+        if (written := len(os.fsencode(value))) > MOST_SOCKET_BYTES:
+            raise ValueError(f"a path of at most {MOST_SOCKET_BYTES} bytes; this one has {written}")
+        return value
 
 
 class FleetConfig(Section):

@@ -15,7 +15,7 @@ class ConfigUnreadable(ConfigError):
     number = 101
     text = "Configuration file cannot be read"
     cause = "Missing file, no permission, or a syntax error in the TOML."
-    remedy = "See the line and column in the detail."
+    remedy = "Check name and folder of the file; of a syntax error the detail has line and column."
 
 
 class ConfigInvalid(ConfigError):

@@ -12,7 +12,8 @@ class StoreUnavailable(RecordsError):
 
     number = 801
     text = "Run store cannot be opened"
-    cause = "Folder missing or not writable, disk full, or a damaged database."
+    cause = "No runs are kept in this folder yet, it is missing or not writable, the disk is full, "
+    cause += "or the database is damaged."
     remedy = "Check data_dir in the cell file, or the folder named with --data-dir, and the "
     remedy += "disk. A store that is damaged is restored from its backup."
 

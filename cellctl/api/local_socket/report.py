@@ -21,7 +21,8 @@ class FaultReport(StrictModel):
     cause: str
     remedy: str
     since: datetime | None = None
-    """When an alarm came, UTC; a latched fault is on the list of alarms, which has its time."""
+    """When an alarm came first and a latched fault last, UTC; None for a fault whose alarm was
+    acknowledged."""
 
 
 class AxisReport(StrictModel):

@@ -71,7 +71,7 @@ class Reporter:
             if (trip := guard.trip) is not None:
                 said = f"{trip.reason.value}: {trip.detail}"
                 stops[unit.view.is_awaited_touch(name)].append(said)
-        alive = self._arbiter.line_alive
+        alive, active = self._arbiter.line_alive, unit.alarms.active
         return StatusReport(
             cell=self._cell.config.name,
             simulated=self._cell.config.simulated,
@@ -89,8 +89,8 @@ class Reporter:
             errors=_axes(live["errors"]),
             forces=tuple(_force(force) for force in live["forces"]),
             permitted={name: one["reason"] for name, one in live["permitted"].items()},
-            faults=tuple(_fault(fault) for fault in machine.faults),
-            alarms=tuple(_alarm(alarm) for alarm in unit.alarms.active),
+            faults=tuple(_fault(fault, active) for fault in machine.faults),
+            alarms=tuple(_alarm(alarm) for alarm in active),
             guard_trip="; ".join(stops[False]),
             guard_touch="; ".join(stops[True]),
             links=live["links"],
@@ -161,8 +161,16 @@ def _guide(guide: Guide) -> dict[str, list[str]]:
     return {part: list(lines) for part, lines in asdict(guide).items()}
 
 
-def _fault(error: CellError) -> FaultReport:
-    return FaultReport(number=error.number, text=str(error), cause=error.cause, remedy=error.remedy)
+def _fault(error: CellError, alarms: Iterable[ActiveAlarm]) -> FaultReport:
+    # Every fault that is latched has come as an alarm, whose last occurrence it is.
+    times = (alarm.newest or alarm.since for alarm in alarms if alarm.number == error.number)
+    return FaultReport(
+        number=error.number,
+        text=str(error),
+        cause=error.cause,
+        remedy=error.remedy,
+        since=next(times, None),
+    )
 
 
 def _alarm(alarm: ActiveAlarm) -> FaultReport:

@@ -6,6 +6,7 @@ import socket
 import stat
 from pathlib import Path
 
+from cellctl.config.cell import MOST_SOCKET_BYTES
 from cellctl.errors.local import CannotServeLocally, LocalApiInUse
 
 MODE = 0o660
@@ -34,10 +35,9 @@ class SocketFile:
 
         Raises ``LocalApiInUse`` while somebody listens there, else ``CannotServeLocally``.
         """
-        # The kernel's own limit (``sun_path``, 108 bytes with the final zero), whose error names no
-        # reason.
-        if len(os.fsencode(self.path)) > 107:
-            raise CannotServeLocally(f"{self.path} is longer than 107 bytes")
+        # The kernel's own error names no reason.
+        if len(os.fsencode(self.path)) > MOST_SOCKET_BYTES:
+            raise CannotServeLocally(f"{self.path} is longer than {MOST_SOCKET_BYTES} bytes")
         listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
             self._make_room()

@@ -8,6 +8,7 @@ from cellctl.api.local_socket.messages import AcknowledgeCommand, made
 from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
+from cellctl.cli.operator.status_screen import with_time
 from cellctl.errors.base import fault_number
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
@@ -21,7 +22,7 @@ def list_alarms(context: typer.Context, socket: SocketOption = None) -> None:
     console = console_of_lines()
     alarms = DaemonClient(socket).status().alarms
     for alarm in alarms:
-        print_hanging(console, alarm.text, 5, "yellow")
+        print_hanging(console, with_time(alarm), 5, "yellow")
         print_hanging(console, f"  cause:  {alarm.cause}", 10)
         print_hanging(console, f"  remedy: {alarm.remedy}", 10)
     if not alarms:

@@ -114,7 +114,7 @@ class DaemonClient:
 
 
 def _refusal(answer: Refused) -> Iterator[str]:
-    yield f"0x{answer.code:X} {answer.text} (state {answer.state})"
+    yield f"0x{answer.code:X} {answer.text} (state {answer.state.capitalize()})"
     if answer.remedy:
         yield answer.remedy
     if answer.known:

@@ -226,9 +226,14 @@ def _last_run(report: StatusReport) -> str:
     )
 
 
-def _fault(fault: FaultReport, kind: str, colour: str) -> Text:
+def with_time(fault: FaultReport) -> str:
+    """The text of a fault or an alarm with the time since which it is there."""
     since = f", since {fault.since:%Y-%m-%d %H:%M:%S} UTC" if fault.since is not None else ""
-    text = Text(f"{kind} {fault.text}{since}\n", style=colour)
+    return f"{fault.text}{since}"
+
+
+def _fault(fault: FaultReport, kind: str, colour: str) -> Text:
+    text = Text(f"{kind} {with_time(fault)}\n", style=colour)
     text.append(f"  cause:  {fault.cause}\n", style="default")
     text.append(f"  remedy: {fault.remedy}", style="default")
     return text

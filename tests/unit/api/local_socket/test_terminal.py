@@ -223,6 +223,7 @@ async def test_faults_and_alarms_come_with_their_remedy(rig: DaemonRig, operator
         (202, str(LinkLost("aux_1")))
     ]
     assert report.alarms[0].remedy == LinkLost.remedy
+    assert report.faults[0].since == report.alarms[0].since is not None
     assert isinstance(await operator.ask(AcknowledgeCommand(number=202)), Taken)
     report = await operator.status()
     assert report.alarms == ()

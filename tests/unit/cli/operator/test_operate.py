@@ -131,7 +131,7 @@ def test_a_refusal_is_a_numbered_fault_with_its_reason(daemon: Agreeable) -> Non
     daemon.refusal = Refused(code=0x10B, text="the line PLC is in control", state="STOPPED")
     done = cellctl("reset")
     assert fault_of(done) is CommandRefused
-    assert "0x10B the line PLC is in control (state STOPPED)" in str(done.exception)
+    assert "0x10B the line PLC is in control (state Stopped)" in str(done.exception)
 
 
 def test_a_refusal_names_what_there_is_and_what_is_permitted(daemon: Agreeable) -> None:
@@ -427,10 +427,11 @@ def test_a_daemon_that_dies_is_not_shown_as_if_it_lived(
 
 def test_alarms_are_listed_with_their_remedy(daemon: Agreeable) -> None:
     assert "no alarms" in cellctl("alarms").output
-    daemon.shows["alarms"] = (FAULT,)
+    daemon.shows["alarms"] = (FAULT, ALARM)
     listed = cellctl("alarms").output
     assert "F202 lost: aux_1" in listed
     assert "Find out why." in listed
+    assert "F501 silent, since 2026-03-04 05:06:07 UTC" in listed
 
 
 def test_the_screen_says_what_matters() -> None:
