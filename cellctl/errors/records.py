@@ -150,8 +150,8 @@ class GaugeRefused(RecordsError):
 
     number = 812
     text = "Gauge result refused"
-    cause = "Mistyped hole or run number, or a run that ended before its part was finished."
-    remedy = "See the detail for the holes of the run; `cellctl runs list` shows the runs."
+    cause = "Mistyped hole, diameter or run number, or a run that ended before its part was made."
+    remedy = "The detail tells holes and diameters of the run; `cellctl runs list` shows the runs."
     reaction = Reaction.WARN
 
 

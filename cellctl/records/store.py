@@ -208,7 +208,7 @@ class RunStore(StoredRecords):
             run=run, time=now, hole=hole, diameter_mm=mm, source=source, gauge_id=gauge_id
         )
         with self._database.write() as session:
-            require_gauge(reading.read_run(session, run), hole)
+            require_gauge(reading.read_run(session, run), hole, mm)
             session.add(row)
             ledger.seal(session, sealed.GAUGE, row, now)
         return now

@@ -1,7 +1,8 @@
 """Plug gauges: which holes of a run may be gauged, and what a gauge says about the part.
 
 A process records the document ``GAUGE_HOLES`` in each run whose part can be gauged:
-``{"P1": {"least_mm": 5.8, "most_mm": 6.0}, …}``. Runs of earlier versions have none.
+``{"P1": {"least_mm": 5.8, "most_mm": 6.0}, …}``, where ``most_mm`` is the drawn bore. Runs of
+earlier versions have none.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,6 +19,8 @@ PART_VERDICT = "part_verdict"
 """Key of the verdict on the part wherever programs are told of a run."""
 _RANGE_MM = Limit(0.5, 50.0)
 """Diameters that plug gauges for pin holes have; anything else is a slip of the keyboard."""
+_WIDER_BORE_MM = 0.05
+"""How much wider than drawn a bore for a pin may be made; no wider gauge passes it."""
 _NO_PART = frozenset({RunResult.STOPPED, RunResult.ABORTED, RunResult.INTERRUPTED})
 
 
@@ -28,7 +31,16 @@ def gauge_limits(record: RunRecord) -> Mapping[str, Limit]:
 
 def hole_limits(holes: Mapping[str, Mapping[str, float]]) -> Mapping[str, Limit]:
     """Limits of the gauge of each hole, mm, from the document ``GAUGE_HOLES``."""
-    return {name: Limit(hole["least_mm"], hole["most_mm"]) for name, hole in holes.items()}
+    return {
+        # Rounded as gauges are: the sum must not come out a rounding error below the widest one.
+        name: Limit(hole["least_mm"], round(hole["most_mm"] + _WIDER_BORE_MM, 3))
+        for name, hole in holes.items()
+    }
+
+
+def bores_mm(record: RunRecord) -> Mapping[str, float]:
+    """Drawn diameter of each hole, mm; empty when the run does not say."""
+    return {name: hole["most_mm"] for name, hole in record.document(GAUGE_HOLES).items()}
 
 
 def beyond_limit(limits: Mapping[str, Limit], newest_mm: Mapping[str, float]) -> bool:
@@ -84,7 +96,7 @@ def require_plausible(hole: str, diameter_mm: float, source: str) -> None:
         raise ValueRefused("a gauge result needs its hole and who measured it")
 
 
-def require_gauge(record: RunRecord, hole: str) -> None:
+def require_gauge(record: RunRecord, hole: str, diameter_mm: float) -> None:
     """Raise ``GaugeRefused`` for a result that cannot be of this run."""
     head = record.head
     if head.result is None:
@@ -101,3 +113,11 @@ def require_gauge(record: RunRecord, hole: str) -> None:
     # Runs of earlier versions do not name their holes: any hole is taken then.
     if known and hole not in known:
         raise GaugeRefused(f"run {head.number} has no pin hole {hole}; it has {', '.join(known)}")
+    widest_mm = gauge_limits(record).get(hole, NO_LIMIT).upper
+    # Not of the mating, whatever that was like: the gauge would not have entered the bore.
+    if widest_mm is not None and diameter_mm > widest_mm:
+        raise GaugeRefused(
+            f"plug gauge {diameter_mm:g} mm in hole {hole} of run {head.number}, whose bore is "
+            f"drawn as {bores_mm(record)[hole]:g} mm; allowed up to {widest_mm:g} mm: check the "
+            "figure that was typed, and which hole was gauged"
+        )

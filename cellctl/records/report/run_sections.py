@@ -44,8 +44,12 @@ REPLAY_INPUT = ".input"
 _SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES, TAKEN, RIMS, TOLD})
 FIT = "fit"
 """Entry of a pose's detail, with what ``_fit_row`` shows."""
-_MARKS = {Verdict.PASS: RowMark.GOOD, Verdict.FAIL: RowMark.BAD, None: RowMark.NONE}
-_VERDICTS = {Verdict.PASS: "within", Verdict.FAIL: "beyond", None: MISSING}
+GAUGE_VERDICTS: Mapping[Verdict | None, tuple[str, RowMark]] = {
+    Verdict.PASS: ("within", RowMark.GOOD),
+    Verdict.FAIL: ("beyond", RowMark.BAD),
+    None: (MISSING, RowMark.NONE),
+}
+"""Word and mark of the row of a gauge, by the verdict on it."""
 
 
 def further_figures(
@@ -125,7 +129,16 @@ def gauges(record: RunRecord) -> ReportSection:
 
 def gauge_table(record: RunRecord) -> ReportTable:
     """Every gauge that was ever entered, in the order of entry; the last of each hole counts."""
-    columns = ("hole", "gauge mm", "at least", "verdict", "gauge", "measured by", "entered")
+    columns = (
+        "hole",
+        "gauge mm",
+        "at least",
+        "at most",
+        "verdict",
+        "gauge",
+        "measured by",
+        "entered",
+    )
     rows = (_gauge_row(record, entry) for entry in record.gauge_history)
     return ReportTable(columns, tuple(rows), numbers=False)
 
@@ -196,17 +209,18 @@ def _pass_row(entry: LoopPass) -> TableRow:
 
 
 def _gauge_row(record: RunRecord, entry: Gauge) -> TableRow:
-    verdict = judge_gauge(record, entry)
+    verdict, mark = GAUGE_VERDICTS[judge_gauge(record, entry)]
     replaced = entry not in record.gauges
-    least_mm = gauge_limits(record).get(entry.hole, NO_LIMIT).lower
+    limit = gauge_limits(record).get(entry.hole, NO_LIMIT)
     texts = (
         entry.hole,
         fixed(entry.diameter_mm, 2),
-        fixed(least_mm, 2),
-        "replaced by a later entry" if replaced else _VERDICTS[verdict],
+        fixed(limit.lower, 2),
+        fixed(limit.upper, 2),
+        "replaced by a later entry" if replaced else verdict,
         entry.gauge_id or MISSING,
         entry.source,
         when(entry.time),
     )
-    mark = RowMark.NONE if replaced else _MARKS[verdict]
-    return TableRow(tuple(TableCell(text) for text in texts), mark)
+    cells = tuple(TableCell(text) for text in texts)
+    return TableRow(cells, RowMark.NONE if replaced else mark)

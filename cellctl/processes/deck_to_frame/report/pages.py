@@ -2,12 +2,13 @@
 
 from cellctl.processes.deck_to_frame.report.acceptance import acceptance, parts, words
 from cellctl.processes.deck_to_frame.report.force_section import force_section, recordings
-from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM, plug_gauges
+from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
+from cellctl.processes.deck_to_frame.report.gauged_holes import GaugedHole, gauged_holes
 from cellctl.processes.deck_to_frame.report.hole_table import TABULATED, hole_blocks
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.processes.deck_to_frame.report.tiles import tiles
-from cellctl.records.entries import Gauge, RunRecord
-from cellctl.records.report.run_sections import gauge_table, pass_table
+from cellctl.records.entries import RunRecord
+from cellctl.records.report.run_sections import GAUGE_VERDICTS, gauge_table, pass_table
 from cellctl.records.report.sections import (
     Drawing,
     ProcessPages,
@@ -15,7 +16,6 @@ from cellctl.records.report.sections import (
     RecordPart,
     ReportSection,
     ReportTable,
-    RowMark,
     TableCell,
     TableRow,
 )
@@ -27,7 +27,8 @@ _LOOP_CAPTION = (
     "last value."
 )
 _GAUGE_CAPTION = (
-    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Shaded: offset below 0.2 mm."
+    "Largest plug gauge that passes both holes, in steps of 0.01 mm. Shaded: what it may be; the "
+    "line is the least."
 )
 
 
@@ -57,21 +58,21 @@ def _loop(record: RunRecord) -> ReportSection:
 def _pin_holes(record: RunRecord) -> ReportSection:
     if not record.gauges:
         return ReportSection("", ())
-    drawing = Drawing(plug_gauges(record.gauges), _GAUGE_CAPTION)
+    holes = gauged_holes(record)
+    drawing = Drawing(plug_gauges(holes), _GAUGE_CAPTION)
     columns = ("hole", "gauge mm", "offset below mm", "verdict", "measured by")
-    rows = tuple(_gauge_row(gauge) for gauge in record.gauges)
+    rows = tuple(_gauge_row(hole) for hole in holes)
     newest = ReportTable(columns, rows, numbers=False)
     return ReportSection("Pin holes", (drawing, newest, gauge_table(record)))
 
 
-def _gauge_row(gauge: Gauge) -> TableRow:
-    passed = gauge.diameter_mm >= LEAST_MM
+def _gauge_row(hole: GaugedHole) -> TableRow:
+    verdict, mark = GAUGE_VERDICTS[hole.verdict]
     texts = (
-        gauge.hole,
-        fixed(gauge.diameter_mm, 2),
-        fixed(HOLE_MM - gauge.diameter_mm, 2),
-        "within" if passed else "beyond",
-        gauge.source,
+        hole.gauge.hole,
+        fixed(hole.gauge.diameter_mm, 2),
+        fixed(hole.offset_below_mm, 2),
+        verdict,
+        hole.gauge.source,
     )
-    mark = RowMark.GOOD if passed else RowMark.BAD
     return TableRow(tuple(TableCell(text) for text in texts), mark)

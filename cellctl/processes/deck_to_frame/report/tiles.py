@@ -9,8 +9,8 @@ from cellctl.processes.deck_to_frame.record.keys import (
     SEAT_ROTATION,
 )
 from cellctl.processes.deck_to_frame.record.worst_component import worst_component
-from cellctl.processes.deck_to_frame.report.gauge_plot import HOLE_MM, LEAST_MM
-from cellctl.records.entries import Figure, Gauge, LoopPass, RunRecord, Verdict
+from cellctl.processes.deck_to_frame.report.gauged_holes import GaugedHole, gauged_holes
+from cellctl.records.entries import Figure, LoopPass, RunRecord, Verdict
 from cellctl.records.figures import Limit
 from cellctl.records.files.curve_file import Recording
 from cellctl.records.report.sections import Tile
@@ -22,7 +22,7 @@ def tiles(record: RunRecord, curves: Iterable[Recording]) -> tuple[Tile, ...]:
     return (
         *(tuple(_seat(record)) or _errors(record.passes)),
         *_peak_force(curves, record.value(LIMIT_FORCE)),
-        *_least_gauge(record.gauges),
+        *_gauge(gauged_holes(record)),
     )
 
 
@@ -72,8 +72,13 @@ def _peak_force(curves: Iterable[Recording], limit_n: float | None) -> Iterator[
         yield Tile("Peak force", f"{max(peaks):.1f} N", allowed, passed)
 
 
-def _least_gauge(gauges: Sequence[Gauge]) -> Iterator[Tile]:
-    if gauges:
-        least = min(gauge.diameter_mm for gauge in gauges)
-        allowed = f"of {HOLE_MM:.2f}, at least {LEAST_MM:.2f}"
-        yield Tile("Least plug gauge", f"{least:.2f} mm", allowed, least >= LEAST_MM)
+def _gauge(holes: Sequence[GaugedHole]) -> Iterator[Tile]:
+    """Of the gauge that fails, or of the least one."""
+    if holes:
+        worst = min(holes, key=lambda hole: (not hole.failed, hole.gauge.diameter_mm))
+        diameter_mm = worst.gauge.diameter_mm
+        title = f"Plug gauge {worst.gauge.hole}" if worst.failed else "Least plug gauge"
+        wide = diameter_mm > worst.most_mm
+        bound = f"at most {worst.most_mm:.2f}" if wide else f"at least {worst.least_mm:.2f}"
+        passed = None if worst.verdict is None else not worst.failed
+        yield Tile(title, f"{diameter_mm:.2f} mm", f"of {worst.bore_mm:.2f}, {bound}", passed)

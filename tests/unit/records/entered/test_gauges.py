@@ -37,9 +37,25 @@ def test_a_gauge_beyond_its_limit_turns_the_verdict(store: RunStore, run: int) -
     assert record.head.result == "good", "how the run ended is sealed"
 
 
-def test_a_gauge_greater_than_its_hole_turns_the_verdict_too(store: RunStore, run: int) -> None:
-    store.set_gauge(run, "P1", 6.02, "OP-7")
-    assert part_verdict(store.run(run)) == "bad"
+@pytest.mark.parametrize(
+    ("mm", "part"), [(5.799, "bad"), (5.8, "good"), (6.02, "good"), (6.05, "good")]
+)
+def test_the_tolerance_of_the_bore_counts_as_within(
+    store: RunStore, run: int, mm: float, part: str
+) -> None:
+    store.set_gauge(run, "P1", mm, "OP-7")
+    assert part_verdict(store.run(run)) == part
+
+
+@pytest.mark.parametrize("mm", [6.051, 6.40, 50.0])
+def test_a_gauge_that_the_bore_does_not_take_is_refused(
+    store: RunStore, run: int, mm: float
+) -> None:
+    said = rf"{mm:g} mm in hole P1 of run {run}.*drawn as 6 mm; allowed up to 6\.05 mm: check"
+    with pytest.raises(GaugeRefused, match=said):
+        store.set_gauge(run, "P1", mm, "OP-7")
+    assert store.run(run).gauge_history == ()
+    assert part_verdict(store.run(run)) == "good"
 
 
 def test_the_list_of_runs_says_so(store: RunStore, run: int) -> None:
@@ -135,8 +151,8 @@ def test_the_command_tells_of_the_entry_before(store: RunStore, run: int) -> Non
     CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.70", *options, *where])
     told = CliRunner().invoke(app, ["gauge", str(run), "--mm", "5.99", *options, *where]).stdout
     by = f"OP-7, typed by {terminal_user()}"
-    assert f"5.70 mm ({by}), required 5.8 to 6 mm: fail, gauge PG-3" in told
-    assert f"5.99 mm ({by}), required 5.8 to 6 mm: pass" in told
+    assert f"5.70 mm ({by}), required 5.8 to 6.05 mm: fail, gauge PG-3" in told
+    assert f"5.99 mm ({by}), required 5.8 to 6.05 mm: pass" in told
 
 
 def test_a_run_that_nobody_has_closed_has_no_part_to_gauge(store: RunStore) -> None:

@@ -31,6 +31,7 @@ from cellctl.processes.deck_to_frame.report.force_plot import (
     force_by_travel,
 )
 from cellctl.processes.deck_to_frame.report.gauge_plot import plug_gauges
+from cellctl.processes.deck_to_frame.report.gauged_holes import GaugedHole, gauged_holes
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.processes.deck_to_frame.report.pass_plot import errors_by_pass
 from cellctl.processes.deck_to_frame.report.tiles import tiles
@@ -78,11 +79,12 @@ def drawn(good: tuple[RunStore, int]) -> dict[Callable[[], str], str]:
     store, run = good
     record = store.run(run)
     assert record.passes[0].worst_ratio > 1.0, "a point beyond its threshold is drawn too"
-    beyond = Gauge(datetime(2026, 1, 1, tzinfo=UTC), "P9", 5.70, "operator")
+    gauge = Gauge(datetime(2026, 1, 1, tzinfo=UTC), "P9", 5.70, "operator")
+    beyond = GaugedHole(gauge, 6.0, 5.8, 6.05, Verdict.FAIL)
     curve = force_curve(seconds=2.0)
     drawings: tuple[Callable[[], str], ...] = (
         lambda: errors_by_pass(record.passes),
-        lambda: plug_gauges([*record.gauges, beyond]),
+        lambda: plug_gauges([*gauged_holes(record), beyond]),
         lambda: force_by_time(curve, 35.0, 50.0),
         lambda: force_by_travel(curve, 35.0, 50.0),
     )
@@ -102,7 +104,7 @@ def test_every_drawing_can_be_read_in_a_grey_print(drawn: dict[Callable[[], str]
 
 def test_a_name_of_a_hole_is_no_formula() -> None:
     gauge = Gauge(datetime(2026, 1, 1, tzinfo=UTC), r"P$\q$", 5.97, "operator")
-    assert ET.fromstring(plug_gauges([gauge])).tag.endswith("svg")
+    assert ET.fromstring(plug_gauges([GaugedHole(gauge, 6.0, 5.8, 6.05, None)])).tag.endswith("svg")
 
 
 def test_curves_without_samples_or_travel_are_drawn() -> None:
