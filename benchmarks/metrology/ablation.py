@@ -27,7 +27,6 @@ from rich.table import Table
 
 from benchmarks.metrology.accuracy import MACHINED_GREY
 from benchmarks.metrology.deck_over_frame import STEP_GREY, looks_of
-from benchmarks.metrology.drawn_hard import HARD
 from benchmarks.metrology.drawn_scenes import Scene, drawn_scene
 from benchmarks.metrology.fake_station import SCENARIO
 from benchmarks.metrology.figures import HoleErrors
@@ -71,7 +70,7 @@ class Term:
 
     name: str
     images: tuple[str, ...]
-    """Looks, hard conditions, the parts ``deck`` and ``frame``, and the deck over the frame."""
+    """Looks, the parts ``deck`` and ``frame``, and the deck over the frame."""
     without: tuple[Replacement, ...]
 
 
@@ -137,7 +136,11 @@ TERMS = (
         ((selection, "_of_uneven_inside", lambda _, walled: walled),),
     ),
     Term("half level of a bent edge", ("disc", *WALLS), ((shape, "_bend_px", always(0.0)),)),
-    Term("movement and focus of the image", EVERYTHING, ((pair_measure, "_SPREAD_ROUNDS", 0),)),
+    Term(
+        "movement and focus of the image",
+        EVERYTHING,
+        ((pair_measure, "_SPREAD_ROUNDS", 0),),
+    ),
     Term(
         "cone: radial slope",
         (*CONES, "deck"),
@@ -153,7 +156,11 @@ TERMS = (
         CONES,
         ((fit_input, "clearance_px", always(np.full(1, np.inf))),),
     ),
-    Term("cone: second edge when narrow", CONES, ((Countersink, "second_edge", always(None)),)),
+    Term(
+        "cone: second edge when narrow",
+        CONES,
+        ((Countersink, "second_edge", always(None)),),
+    ),
     Term(
         "bore: broken edge", ("disc", *WALLS, "broken edge"), ((Pin, "second_edge", always(None)),)
     ),
@@ -178,9 +185,7 @@ TERMS = (
             changed(
                 stereo_fit,
                 "fit_two_edges",
-                lambda full: (
-                    lambda given, second, _, wall_ratio: full(given, second, None, wall_ratio)
-                ),
+                lambda full: lambda given, second, _: full(given, second, None),
             ),
         ),
     ),
@@ -199,11 +204,6 @@ TERMS = (
         (less("_inside", slice(14, 19), only_if=lambda model: model.uneven_grey > 0.0),),
     ),
     Term("outliers weigh less", ("lit wall", "turns", "deck"), ((noise, "_HUBER", 1e9),)),
-    Term(
-        "arcs off the circle leave",
-        ("dented", "glints", *WALLS, "deck", HANGING),
-        ((selection, "_LEFT_OUT", (1.0, 1.0)),),
-    ),
     Term("lower edge must settle", (*WALLS, "deck"), ((solver, "_LOWER_EDGE", 0.0),)),
     Term(
         "covariance: alike over arcs",
@@ -211,7 +211,9 @@ TERMS = (
         ((covariance, "arc_covariance", lambda scores, _: np.zeros((len(scores),) * 2)),),
     ),
     Term(
-        "covariance: uneven light", EVERYTHING, ((covariance, "_model_covariance", no_covariance),)
+        "covariance: uneven light",
+        EVERYTHING,
+        ((covariance, "_model_covariance", no_covariance),),
     ),
     Term(
         "covariance: other models",
@@ -232,8 +234,6 @@ def scenes(image: str, count: int) -> list[Scene]:
     if image == HANGING:
         return [scene for seed in range((count + 1) // 2) for scene in _hanging(seed)][:count]
     if image not in PARTS:
-        if image in HARD:
-            return [drawn_scene("disc", seed, HARD[image]) for seed in range(count)]
         return [drawn_scene(image, seed) for seed in range(count)]
     seen = parts(PARTS[image], api.RenderOptions(), (count + 1) // 2, 1, seed=1)
     views = [view for part in seen for view in part.views][:count]

@@ -39,20 +39,6 @@ def _speeding_up(rng: Draw, sub: int) -> NDArray[np.float32]:
     return _along_a_path(rng, sub, float(rng.uniform(0.3, 0.9)))
 
 
-def _dented_once(look: Look, rng: Draw) -> Look:
-    """One dent with steep sides in a tenth of the rim, which a person does not mind."""
-    where, half_width = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.4)
-    depth = rng.uniform(0.03, 0.12)
-
-    def grey(q: Array, m: Array) -> Array:
-        turn = _turn(np.arctan2(q[1], q[0]) - where)
-        deep = depth * np.maximum(1.0 - (turn / half_width) ** 4, 0.0)
-        scale = np.where(np.hypot(*q) < 1.0 + deep, 1.0 / (1.0 + deep), 1.0)
-        return look.grey(q * scale, m)
-
-    return replace(look, grey=grey, reach=max(look.reach, 1.3))
-
-
 def _dented(look: Look, rng: Draw) -> Look:
     """Metal pushed away over one to three arcs of five to twenty degrees."""
     count = int(rng.integers(1, 4))
@@ -102,7 +88,6 @@ def _turn(angle: Array) -> Array:
 HARD = {
     "moved": Condition(spread=_moved),
     "moved, speeding up": Condition(spread=_speeding_up),
-    "dented in a tenth": Condition(worn=_dented_once),
     "dented": Condition(worn=_dented),
     "glints": Condition(worn=_glinting),
 }

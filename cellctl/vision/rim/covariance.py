@@ -59,16 +59,22 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     models which explain the pixels nearly as well; plane units squared.
     """
     problem, solution = fit.problem, fit.solution
-    rows = [solution.lights + index for index in range(problem.geometry)]
+    count = 2 * len(problem.views) + 1
+    rows = [solution.lights + index for index in range(count)]
     everything = solution.covariance
     covariance = everything[np.ix_(rows, rows)]
     unexplained = solution.noise.own(solution.residuals)
     # To first order this is how far each pixel's residual alone moves the centre.
     scores = everything[rows] @ solution.design * solution.noise.weights * unexplained
+    offsets = [
+        view.pixels.points - shape.centre[:, None]
+        for view, shape in zip(problem.views, fit.shapes, strict=True)
+    ]
     # Both images of a joint fit share the sectors: what disturbs one side of a rim disturbs it in
     # both.
+    x, y = np.concatenate(offsets, axis=1)
     independent = covariance
-    seen = arc_covariance(scores, problem.azimuths(solution.vector))
+    seen = arc_covariance(scores, np.arctan2(y, x))
     covariance = _widened(independent, seen)
     outside = solution.outside
     grey = np.concatenate([view.pixels.grey for view in problem.views]) - solution.residuals
@@ -82,10 +88,6 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     centre = slice(2 * len(problem.views))
     inverse = np.linalg.inv(independent[centre, centre])
     misfit = float(np.trace(inverse @ seen[centre, centre])) / len(inverse)
-    if problem.arcs_may_be_off and misfit > CHANCE:
-        # Arcs have left the fit and the rest is no circle either: what it shows is the part that
-        # the fit could not take up, and the same error has moved the centre, too.
-        covariance = covariance * misfit
     return RatedFit(fit, covariance, contrast, misfit)
 
 

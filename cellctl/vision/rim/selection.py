@@ -11,6 +11,7 @@ import numpy as np
 from scipy.special import expit
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import SecondEdge
 from cellctl.vision.rim.covariance import CHANCE, with_covariance
 from cellctl.vision.rim.fit_input import RimFitInput
@@ -26,7 +27,7 @@ from cellctl.vision.rim.solver import (
     two_image_problem,
 )
 
-SIGNIFICANT_GAIN = 15.0
+_SIGNIFICANT_GAIN = 15.0
 """Fall of chi square by up to six terms that two rims in a hundred show by chance."""
 _RIDGE = 1e-6
 """Keeps terms that the fit already models from counting as evidence."""
@@ -52,11 +53,6 @@ _UNEVEN_GREY = 15.0
 """Expected unevenness of the turns of a thread, or of what is seen through a bore: standard
 deviation of each term."""
 _NO_SPREAD: Array = np.zeros((2, 2))
-_LEFT_OUT = (0.07, 0.45)
-"""Share of a rim that may leave its fit: less than three arcs may be chance, and the edges of the
-rest must be a rim."""
-_DISTURBED = 5.0
-"""Misfit from which on something else than texture or a burr must be at a rim: these reach 4.5."""
 _PIXELS_ALIKE = 10.0
 """Number of neighbouring pixels whose model errors are alike: evidence is divided by it."""
 
@@ -88,7 +84,7 @@ class ScoreTests:
         """Whether the inside of the rim is not even."""
         below, cos, sin = 1.0 - self._radius, self._cos, self._sin
         rows = np.stack([cos, sin, below, below * cos, below * sin, below * below])
-        return self._gain((1.0 - self._solution.outside) * rows) > SIGNIFICANT_GAIN
+        return self._gain((1.0 - self._solution.outside) * rows) > _SIGNIFICANT_GAIN
 
     def ring_gain(self) -> float:
         """Largest fall of chi square that a narrow ring of another grey would bring."""
@@ -127,52 +123,24 @@ class SelectedFit:
 
 
 def fit_single_image(given: RimFitInput) -> SelectedFit:
-    """Fit a rim in one image by itself, with a wall below it or without.
-
-    Where no model explains the rim all round, all are tried again without the arcs that are off the
-    circle.
-    """
-    models = _models_of_a_circle(given)
-    chosen = _likelier(models[0], models[-1])
-    if _misfit(chosen.fit) < _DISTURBED:
-        return chosen
-    first, *others = (_without_arcs(given, model) for model in models)
-    rest = SelectedFit(first, _NO_SPREAD)
-    for other in others:
-        rest = _likelier(rest.fit, other)
-    return rest if _some_left_out(rest.fit) else chosen
-
-
-def _some_left_out(fit: RimFit) -> bool:
-    return _LEFT_OUT[0] < fit.solution.noise.share_left_out < _LEFT_OUT[1]
-
-
-def _without_arcs(given: RimFitInput, model: RimFit) -> RimFit:
-    """The fit of a model from where the edges are, without the arcs that are off the circle."""
-    start = np.array([*given.centre, given.radius, *model.solution.vector[3:]])
-    return full_fit(replace(model.problem, arcs_may_be_off=True), start)
-
-
-def _models_of_a_circle(given: RimFitInput) -> list[RimFit]:
-    """Fits with more and more light inside, as far as the pixels ask for it."""
+    """Fit a rim in one image by itself, with a wall below it or without."""
     kind, across_lay = given.roi.kind, given.across_lay()
     light, radius = LightModel(cone=kind.cone), given.roi.nominal_radius
     bare = RimShape(given.centre, given.radius, _START_BLUR_PX)
     problem = single_image_problem(given.pixels, bare, light, radius, across_lay)
     plain = full_fit(problem, bare.vector)
     if not kind.may_show_wall:
-        return [plain]
+        return SelectedFit(plain, _NO_SPREAD)
     # The test needs one linear solve, a further fit many. A rim that it passes is done.
     tests = ScoreTests(plain)
     ratio, gain = tests.likely_wall([depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M])
     uneven = tests.uneven_inside()
     if gain < _HINT_GAIN and not uneven:
-        return [plain]
+        return SelectedFit(plain, _NO_SPREAD)
     shape = replace(plain.shapes[0], wall_ratio=ratio)
     with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
     walled = full_fit(with_wall, shape.vector)
-    better = _of_uneven_inside(plain, walled) if uneven else walled
-    return [plain, walled] if better is walled else [plain, walled, better]
+    return _likelier(plain, _of_uneven_inside(plain, walled) if uneven else walled)
 
 
 def _of_uneven_inside(plain: RimFit, walled: RimFit) -> RimFit:
@@ -192,11 +160,7 @@ def _of_uneven_inside(plain: RimFit, walled: RimFit) -> RimFit:
 
 def _pulled(fit: RimFit) -> bool:
     """Whether the residuals pull at the centre by more than chance."""
-    return _misfit(fit) > CHANCE
-
-
-def _misfit(fit: RimFit) -> float:
-    return with_covariance(fit, _NO_SPREAD).misfit
+    return with_covariance(fit, _NO_SPREAD).misfit > CHANCE
 
 
 def _likelier(plain: RimFit, other: RimFit) -> SelectedFit:
@@ -207,6 +171,47 @@ def _likelier(plain: RimFit, other: RimFit) -> SelectedFit:
     off = other.solution.vector[:2] - plain.solution.vector[:2]
     best, against = (other, 1.0 - for_other) if for_other > 0.5 else (plain, for_other)
     return SelectedFit(best, np.outer(off, off) * against)
+
+
+class StereoEvidence:
+    """The evidence of fits with one edge, as ``RimEvidence`` describes it."""
+
+    def __init__(
+        self, given: tuple[RimFitInput, RimFitInput], fits: tuple[SelectedFit, SelectedFit]
+    ) -> None:
+        self._given, self._fits = given, [selected.fit for selected in fits]
+
+    @property
+    def hole(self) -> Hole:
+        """The hole as the drawing gives it."""
+        return self._given[0].roi.hole
+
+    @property
+    def clear_px(self) -> tuple[float, float]:
+        """Distance to the next edge outside the rim, left and right; infinite when none is near."""
+        return self._given[0].clear_px, self._given[1].clear_px
+
+    def in_radii(self, length_px: float, image: int = 0) -> float:
+        """A length in one image (0 left, 1 right) over the radius of the rim there."""
+        given = self._given[image]
+        return length_px * given.patch.unit_px / given.radius
+
+    def both_converged(self) -> bool:
+        """Whether the fits of both images settled."""
+        return all(fit.converged for fit in self._fits)
+
+    def ring_gains(self) -> tuple[float, float]:
+        """Fall of chi square, left and right, if a narrow ring of another grey were modelled."""
+        left, right = (ScoreTests(fit).ring_gain() for fit in self._fits)
+        return left, right
+
+    def ring_seen(self) -> bool:
+        """Whether a narrow ring explains more than chance in at least one image."""
+        return max(self.ring_gains()) > _SIGNIFICANT_GAIN
+
+    def uneven_inside(self) -> bool:
+        """Whether the inside is uneven by more than chance in at least one image."""
+        return any(ScoreTests(fit).uneven_inside() for fit in self._fits)
 
 
 def fit_two_edges(
@@ -227,33 +232,23 @@ def fit_two_edges(
         blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     pixels, across_lay = (given[0].pixels, given[1].pixels), given[0].across_lay()
 
-    def coarse(sigma: float, *, arcs: bool, **second_edge: float) -> RimFit:
+    def coarse(sigma: float, **second_edge: float) -> RimFit:
         left, right = (
             RimShape(one.centre, one.roi.nominal_radius, blur, **second_edge)
             for one, blur in zip(given, blurs, strict=True)
         )
         light = LightModel(uneven_grey=_UNEVEN_GREY)
         problem = two_image_problem(pixels, (left, right), light, (blur_sigma, sigma), across_lay)
-        return coarse_fit(replace(problem, arcs_may_be_off=arcs), problem.mean)
-
-    def likeliest(*, arcs: bool) -> SelectedFit:
-        models = [
-            coarse(second.sigma, arcs=arcs, ring_ratio=ring, ring_slope=slope)
-            for slope in _RING_SLOPES
-        ]
-        if not given[0].roi.kind.turns:
-            # In an image out of focus a bore with a wall looks as if it had a ring.
-            models.append(coarse(_WALL_SIGMAS * wall, arcs=arcs, wall_ratio=wall))
-        return _likeliest(models)
+        return coarse_fit(problem, problem.mean)
 
     # A fit does not always come up to a wall from far below its depth.
     ring, wall = 1.0 + second.width, wall_ratio or _WALL_M / given[0].roi.distance_m
     # Coarse fits are enough to compare the models; only the likeliest one is brought to its end.
-    chosen = likeliest(arcs=False)
-    if _misfit(chosen.fit) < _DISTURBED:
-        return chosen
-    rest = likeliest(arcs=True)
-    return rest if _some_left_out(rest.fit) else chosen
+    models = [coarse(second.sigma, ring_ratio=ring, ring_slope=slope) for slope in _RING_SLOPES]
+    if not given[0].roi.kind.turns:
+        # In an image out of focus a bore with a wall looks as if it had a ring.
+        models.append(coarse(_WALL_SIGMAS * wall, wall_ratio=wall))
+    return _likeliest(models)
 
 
 def _likeliest(models: list[RimFit]) -> SelectedFit:
