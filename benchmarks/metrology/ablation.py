@@ -185,7 +185,9 @@ TERMS = (
             changed(
                 stereo_fit,
                 "fit_two_edges",
-                lambda full: lambda given, second, _: full(given, second, None),
+                lambda full: (
+                    lambda given, second, _, wall_ratio: full(given, second, None, wall_ratio)
+                ),
             ),
         ),
     ),
