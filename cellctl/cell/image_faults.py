@@ -3,23 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from cellctl.errors.vision import (
-    CamerasSwapped,
-    CameraUpsideDown,
-    ImageBlack,
-    ImageBlurred,
-    ImageSaturated,
-    ImageSizeMismatch,
-)
-
-_OF_IMAGES = (
-    ImageSizeMismatch,
-    ImageBlack,
-    ImageSaturated,
-    ImageBlurred,
-    CamerasSwapped,
-    CameraUpsideDown,
-)
+from cellctl.errors.vision import OF_AN_IMAGE
 
 
 @contextmanager
@@ -30,5 +14,5 @@ def naming(device: str) -> Iterator[None]:
     """
     try:
         yield
-    except _OF_IMAGES as fault:
+    except OF_AN_IMAGE as fault:
         raise type(fault)(f"{device}, {fault.detail}") from fault

@@ -177,3 +177,14 @@ class CameraFileInvalid(VisionError):
     cause = "The file is missing, not JSON, incomplete, or was changed after it was made."
     remedy = "Calibrate the camera again, or restore the file as it was made."
     reaction = Reaction.STOP
+
+
+OF_AN_IMAGE = (
+    ImageSizeMismatch,
+    ImageBlack,
+    ImageSaturated,
+    ImageBlurred,
+    CamerasSwapped,
+    CameraUpsideDown,
+)
+"""Faults of an image itself or of its camera, whatever the image shows."""

@@ -10,17 +10,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
 from cellctl.errors.records import NotReplayable
-from cellctl.errors.vision import (
-    CamerasSwapped,
-    CameraUpsideDown,
-    HoleAmbiguous,
-    HoleMissing,
-    ImageBlack,
-    ImageBlurred,
-    ImageSaturated,
-    ImageSizeMismatch,
-    VisionError,
-)
+from cellctl.errors.vision import OF_AN_IMAGE, HoleAmbiguous, HoleMissing, VisionError
 from cellctl.force.contact.curve import curve_statistics
 from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
@@ -63,19 +53,7 @@ from cellctl.vision.registration.part_pose import PartPose
 POSE = (("X", "mm"), ("Y", "mm"), ("Z", "mm"), ("A", "°"), ("B", "°"), ("C", "°"))
 FORCE_RESOLUTION = 1e-4
 """Force curves are written with four decimals."""
-OF_ONE_PAIR = frozenset(
-    fault.number
-    for fault in (
-        ImageSizeMismatch,
-        ImageBlack,
-        ImageSaturated,
-        ImageBlurred,
-        CamerasSwapped,
-        CameraUpsideDown,
-        HoleMissing,
-        HoleAmbiguous,
-    )
-)
+OF_ONE_PAIR = frozenset(fault.number for fault in (*OF_AN_IMAGE, HoleMissing, HoleAmbiguous))
 """Faults that the images of one head lead to by themselves."""
 ROUNDING = 1e-9
 """Difference in mm and degrees that counts as rounding: the last digits depend on the number of
