@@ -25,15 +25,17 @@ from cellctl.cell.run_notes import RunNotes
 from cellctl.command.arbiter import CommandArbiter
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.cell import Plc
-from cellctl.daemon.heap import collect_what_comes, give_back_large_blocks
+from cellctl.daemon.heap import collect_what_comes, give_back_large_blocks, give_back_small_blocks
 from cellctl.daemon.notify import notify
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.packml.command import Command
+from cellctl.packml.state import State
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
+from cellctl.runtime.background import Background
 from cellctl.runtime.cell_status import CellStatus
 from cellctl.runtime.unit import AT_REST, UnitController
 
@@ -93,6 +95,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.callback(cell.workers.close)
         unit = UnitController(cell, store)
         unit.calibrations.look_every(LOOK_S)
+        unit.machine.on_change.append(partial(_tidy_at_rest, unit.background))
         stack.push_async_callback(unit.background.drain)
         log.always(unit.log_facts)
         # Before anybody can command: runs that an earlier process left open are closed as
@@ -121,6 +124,12 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         notify("STOPPING=1")
     _log.info("ended")
     return 0
+
+
+def _tidy_at_rest(background: Background, _before: State, after: State) -> None:
+    if after in AT_REST:
+        # Not in the loop, which beats for the guard and the line at rest, too.
+        background.start(asyncio.to_thread(give_back_small_blocks))
 
 
 async def _command_path(

@@ -1,4 +1,4 @@
-"""Memory of the daemon: what comes at the start stays, images and force curves go back at once."""
+"""Memory of the daemon: what comes at the start stays, what a run leaves free goes back."""
 
 import ctypes
 import gc
@@ -22,6 +22,21 @@ def give_back_large_blocks() -> bool:
     if not hasattr(allocator, "mallopt"):
         return False
     return bool(allocator.mallopt(_M_MMAP_THRESHOLD, LARGE_BYTES))
+
+
+def give_back_small_blocks() -> bool:
+    """Give the pages back on which nothing lives any more; False where the allocator cannot.
+
+    Nothing that a run makes is kept, but its small objects lie between those that stay, and by
+    itself the GNU C library gives back only what lies above all of them: the daemon grew by 0.35 MB
+    a part. No other thread gets memory meanwhile: 24 ms for 270 MB, less than one millisecond for
+    what a part leaves. So this is for moments in which no robot moves.
+    """
+    allocator = ctypes.CDLL(None)
+    if not hasattr(allocator, "malloc_trim"):
+        return False
+    allocator.malloc_trim(0)
+    return True
 
 
 def hold_collections() -> None:
