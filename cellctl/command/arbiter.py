@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 
 from cellctl import log
 from cellctl.command.latest import TakenCommand
+from cellctl.command.refusal_notes import RefusalNotes
 from cellctl.command.submission import Submission
 from cellctl.command.tracker import CommandTracker
 from cellctl.command.validator import CommandValidator, start_mode
@@ -14,6 +15,7 @@ from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.entered.said_by import ORDER, REFUSED
 from cellctl.records.store import RunStore
 from cellctl.runtime.unit import MAY_MOVE, UnitController
 
@@ -48,6 +50,7 @@ class CommandArbiter:
         # Not taken while a command is validated: validation waits for the disk, and no other
         # command should wait for that.
         self._turn = asyncio.Lock()
+        self._refusals = RefusalNotes()
         self.latest: TakenCommand | None = None
         """Of all sources, since the daemon started."""
 
@@ -59,11 +62,18 @@ class CommandArbiter:
     async def submit(self, submission: Submission) -> RejectCode:
         """Validate and execute a command; NONE when it is being executed.
 
-        The answer comes when the audit log has the command on disk, that of Stop and Abort at once.
+        The answer comes when the audit log has the command on disk, that of Stop and Abort and a
+        refusal at once.
 
         The submission hears of the command's end, which may come before this returns. Raises the
         numbered fault of a device that broke.
         """
+        code = await self._submitted(submission)
+        if code is not RejectCode.NONE:
+            self.note_refusal(submission.command, code, submission.reference)
+        return code
+
+    async def _submitted(self, submission: Submission) -> RejectCode:
         command = submission.command
         if command.ends_motion:
             return await self._end_motion(submission)
@@ -77,18 +87,26 @@ class CommandArbiter:
         return code
 
     def note_refusal(
-        self, command: UnitCommand, code: RejectCode, details: Mapping[str, str]
+        self, command: UnitCommand, code: RejectCode, details: Mapping[str, int | str]
     ) -> None:
-        """Have the audit log say, some time soon, what somebody was refused and why."""
+        """Have the audit log say, some time soon, what somebody was refused and why.
+
+        Of refusals that come by the hundred it says how many it leaves out.
+        """
+        left_out = self._refusals.take(command.source)
+        if left_out is None:
+            return
         detail: dict[str, int | str] = {
             **details,
-            "refused": code.text,
+            **_asked(command),
+            REFUSED: code.text,
             "reject_code": int(code),
+            "state": self._unit.machine.state.name.lower(),
         }
         if command.unit_mode:
-            detail["mode"] = Mode(command.unit_mode).name.lower()
-        if command.alarm_ack_id:
-            detail["acknowledged"] = command.alarm_ack_id
+            detail["mode"] = _mode_name(command.unit_mode)
+        if left_out:
+            detail["refusals_left_out_before"] = left_out
         writing = self._store.do(RunStore.audit, command.who, _name(command), detail)
         self._unit.background.start(writing)
 
@@ -187,19 +205,30 @@ class CommandArbiter:
     async def _audit(self, submission: Submission) -> None:
         command = submission.command
         detail: dict[str, int | str] = {"mode": self._unit.machine.mode.name.lower()}
-        detail |= submission.reference
-        if command.order:
-            detail["order"] = command.order
-        if command.cntrl_cmd == Command.START:
-            detail |= {
-                "recipe": command.recipe_id,
-                "serial": command.serial,
-                "mate_serial": command.mate_serial,
-                "options": int(command.options),
-            }
-        if command.alarm_ack_id:
-            detail["acknowledged"] = command.alarm_ack_id
+        detail |= {**submission.reference, **_asked(command)}
         await self._store.do(RunStore.audit, command.who, _name(command), detail)
+
+
+def _asked(command: UnitCommand) -> dict[str, int | str]:
+    """What a command asks for besides its name and mode, for the audit log."""
+    asked: dict[str, int | str] = {}
+    if command.order:
+        asked[ORDER] = command.order
+    if command.cntrl_cmd == Command.START:
+        asked |= {
+            "recipe": command.recipe_id,
+            "serial": command.serial,
+            "mate_serial": command.mate_serial,
+            "options": int(command.options),
+        }
+    if command.alarm_ack_id:
+        asked["acknowledged"] = command.alarm_ack_id
+    return asked
+
+
+def _mode_name(number: int) -> str:
+    """The number itself where the line has asked for a mode that there is not."""
+    return Mode(number).name.lower() if number in set(Mode) else str(number)
 
 
 def _name(command: UnitCommand) -> str:

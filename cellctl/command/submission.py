@@ -85,3 +85,5 @@ class Submission:
 
 Submit = Callable[[Submission], Awaitable[RejectCode]]
 """``CommandArbiter.submit``, as the interfaces see it."""
+NoteRefusal = Callable[[UnitCommand, RejectCode, Mapping[str, int | str]], None]
+"""``CommandArbiter.note_refusal``: for what an interface itself refuses."""

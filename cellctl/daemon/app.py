@@ -148,6 +148,7 @@ async def _command_path(
         arbiter.submit,
         heartbeat,
         lambda seq: store.do(RunStore.note_line_seq, seq),
+        note_refusal=arbiter.note_refusal,
         previous_seq=await store.do(RunStore.line_seq),
     )
     return arbiter, plc

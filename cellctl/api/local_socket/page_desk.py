@@ -2,7 +2,7 @@
 
 import asyncio
 import os
-from collections import OrderedDict, deque
+from collections import OrderedDict
 from collections.abc import Awaitable, Callable, Mapping
 
 from cellctl.api.local_socket.messages import (
@@ -16,7 +16,6 @@ from cellctl.api.local_socket.messages import (
     Taken,
 )
 from cellctl.api.local_socket.users import Users
-from cellctl.clock import Monotonic, now_s
 from cellctl.errors.local import NotThePage
 from cellctl.packml.reject import RejectCode
 
@@ -28,8 +27,6 @@ Obey = Callable[[CommandRequest, str, Mapping[str, str]], Awaitable[Taken | Refu
 KEYS_KEPT = 1000
 """Answers that are remembered, for commands that come again. A browser repeats one within seconds,
 so that hours of commands are more than enough."""
-NOTED_A_MINUTE = 60
-"""Refusals that are noted. Whoever may not even stop the cell could else fill the disk."""
 ROLES: tuple[Role, ...] = ("view", "operate", "maintain")
 """Roles in rising order of what they may do."""
 NEEDS: Mapping[str, Role] = {"mode": "maintain", "procedure": "maintain"}
@@ -81,16 +78,12 @@ class PageDesk:
         decision: Callable[[], int],
         obey: Obey,
         turned_down: TurnedDown,
-        *,
-        clock: Monotonic = now_s,
     ) -> None:
         self._page_user = page_user
         self._users = users
         self._decision = decision
         self._obey = obey
         self._turned_down = turned_down
-        self._now_s = clock
-        self._noted_s: deque[float] = deque(maxlen=NOTED_A_MINUTE)
         self._answers: OrderedDict[str, tuple[PageCommand, asyncio.Future[Answer]]] = OrderedDict()
 
     async def handle(self, request: PageCommand, uid: int) -> Answer:
@@ -129,21 +122,11 @@ class PageDesk:
         who = f"{person.person}@{person.panel}" if person.panel else person.person
         details = {"role": person.role, "key": person.key, "reason": person.reason}
         code = refusal(name, person, self._decision())
-        if code is not RejectCode.NONE:
-            answer: Taken | Refused = Refused(code=code, text=code.text, state="")
-        else:
-            answer = await self._obey(request.command, who, details)
-        if isinstance(answer, Refused) and self._may_note():
-            self._turned_down(request.command, who, RejectCode(answer.code), details)
-        return answer
-
-    def _may_note(self) -> bool:
-        time_s = self._now_s()
-        full = len(self._noted_s) == NOTED_A_MINUTE
-        if full and time_s - self._noted_s[0] < 60.0:
-            return False
-        self._noted_s.append(time_s)
-        return True
+        if code is RejectCode.NONE:
+            return await self._obey(request.command, who, details)
+        # What the cell refuses it notes itself; this never comes so far.
+        self._turned_down(request.command, who, code, details)
+        return Refused(code=code, text=code.text, state="")
 
 
 def _meant(request: PageCommand) -> tuple[str, CommandRequest]:

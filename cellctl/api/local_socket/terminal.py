@@ -1,6 +1,6 @@
 """Turns the requests of operators into commands, which are validated like those of the line PLC."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from cellctl import log
@@ -28,7 +28,7 @@ from cellctl.api.local_socket.page_desk import PageDesk
 from cellctl.api.local_socket.refusal_remedy import remedy
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.users import Users
-from cellctl.command.submission import Submission, Submit
+from cellctl.command.submission import NoteRefusal, Submission, Submit
 from cellctl.config import CellConfig
 from cellctl.packml.command import Command
 from cellctl.packml.machine import PackMLMachine
@@ -37,7 +37,6 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.unit_command import Options, Source, UnitCommand
 
 _log = log.get(__name__)
-NoteRefusal = Callable[[UnitCommand, RejectCode, Mapping[str, str]], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,13 +103,16 @@ class Terminal:
         if not command.ends_motion:
             # A directory service may take a second, which a Stop cannot wait.
             await self._users.look_up(uid)
-        return await self._submitted(replace(command, person=self._users.name(uid)), {})
+        asked = request.command if isinstance(request, GivenCommand) else request
+        person = self._users.name(uid)
+        return await self._submitted(replace(command, person=person), _named(asked, command))
 
     async def _obey(
         self, request: CommandRequest, person: str, details: Mapping[str, str]
     ) -> Taken | Refused:
         """A command of a page, whose person is known."""
-        return await self._submitted(self._of_page(request, person), details)
+        command = self._of_page(request, person)
+        return await self._submitted(command, {**details, **_named(request, command)})
 
     def _turned_down(
         self, request: CommandRequest, person: str, code: RejectCode, details: Mapping[str, str]
@@ -185,6 +187,13 @@ class Terminal:
         # Two recipes may have one name, and a name may be another one's number. Nothing is guessed:
         # the validator refuses 0 with the reject code that the line would get.
         return found[0] if len(found) == 1 else 0
+
+
+def _named(request: CommandRequest, command: UnitCommand) -> Mapping[str, str]:
+    """The name of a recipe that this cell does not have: its number, 0, would not tell it."""
+    if isinstance(request, StartCommand) and request.recipe and not command.recipe_id:
+        return {"recipe_named": request.recipe}
+    return {}
 
 
 def _given_at(command: UnitCommand, given_s: float) -> UnitCommand:

@@ -19,7 +19,7 @@ from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.api.modbus.status import Handshake, values
 from cellctl.api.modbus.submission import LineSubmission
 from cellctl.command.queue import CommandQueue
-from cellctl.command.submission import Submit
+from cellctl.command.submission import NoteRefusal, Submit
 from cellctl.config.cell import Plc
 from cellctl.errors.base import CellError
 from cellctl.errors.line import LineTaskDied
@@ -58,18 +58,21 @@ class PlcInterface:
         heartbeat: LineHeartbeat,
         remember_seq: Callable[[int], Awaitable[object]],
         *,
+        note_refusal: NoteRefusal,
         previous_seq: int | None = None,
         limits: ServerLimits | None = None,
     ) -> None:
         """``heartbeat`` is fed here, and asked by whoever needs to know whether the line is alive.
 
-        ``remember_seq`` writes the number of a command to disk; ``previous_seq`` is the number that
+        ``remember_seq`` writes the number of a command to disk; ``note_refusal`` hears of commands
+        that are given up before they are submitted; ``previous_seq`` is the number that
         it wrote last before this start.
         """
         self._config = config
         self._submit = submit
         self._line_heartbeat = heartbeat
         self._remember_seq = remember_seq
+        self._note_refusal = note_refusal
         self._latch = CommandLatch(previous_seq, config.word_order)
         heartbeat.on_lost.append(self._lost)
         self._registers = RegisterFile(on_commit=self._committed, on_heartbeat=self._beaten)
@@ -236,6 +239,7 @@ class PlcInterface:
         self._latch.supersede(submission.seq)
         cmd = submission.command.cntrl_cmd
         _log.warning("line command superseded", seq=submission.seq, cmd=cmd)
+        self._note_refusal(submission.command, RejectCode.SUPERSEDED, submission.reference)
 
     def _refresh(self) -> None:
         # The same number at both ends of the block: a PLC that reads it in slices sees a tear.

@@ -97,7 +97,7 @@ def start(
     mate_serial: Annotated[
         str, typer.Option(help="Serial number of the part it is joined to, such as the frame.")
     ] = "",
-    order: Annotated[str, typer.Option(help="Operator or order for the record.")] = "",
+    order: Annotated[str, typer.Option(help="Order for the record.")] = "",
     *,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="End before the first step in contact.")

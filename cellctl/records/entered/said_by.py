@@ -16,6 +16,17 @@ ENTERED = "entered"
 """Key in the detail of a gauge's entry: the time of the gauge, by which it is found."""
 
 
+ORDER = "order"
+"""Key in the detail of a command: the order that its giver has named."""
+REFUSED = "refused"
+"""Key in the detail of a command that was not obeyed: why."""
+
+
+def was_obeyed(entry: AuditEntry) -> bool:
+    """False for a command that was refused, which has led to nothing."""
+    return REFUSED not in entry.detail
+
+
 def said_by(entry: AuditEntry) -> str:
     """Who has said it, as ``Anna, typed by terminal:root``; in entries of earlier versions a typed
     name stands alone."""

@@ -256,3 +256,22 @@ async def test_what_was_commanded_is_in_the_audit_log(rig: DaemonRig) -> None:
     ]
     assert entries[1][2]["order"] == "OP-3", "an order is no person"
     assert entries[1][2]["serial"] == "SAT-9"
+
+
+async def test_what_the_line_is_refused_is_in_the_audit_log(rig: DaemonRig) -> None:
+    await rig.idle()
+    assert await rig.take(Command.START, recipe_id=99) is RejectCode.RECIPE_UNKNOWN
+    assert await rig.take(Command.UNDEFINED, unit_mode=77) is RejectCode.MODE_UNDEFINED
+    assert await rig.take(Command.ABORT) is RejectCode.NONE
+    await rig.to(State.ABORTED)
+    assert await rig.take(Command.STOP) is RejectCode.COMMAND_NOT_ALLOWED
+    await rig.unit.background.drain()
+    noted = [(action, detail) for _, action, detail in await rig.archive.do(audit)]
+    refused = [(action, detail) for action, detail in noted if "refused" in detail]
+    assert [(action, detail["reject_code"]) for action, detail in refused] == [
+        ("start", RejectCode.RECIPE_UNKNOWN),
+        ("set", RejectCode.MODE_UNDEFINED),
+        ("stop", RejectCode.COMMAND_NOT_ALLOWED),
+    ]
+    assert (refused[0][1]["recipe"], refused[0][1]["seq"]) == (99, 2)
+    assert refused[1][1]["mode"] == "77"

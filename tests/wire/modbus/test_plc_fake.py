@@ -37,7 +37,14 @@ class FakelessCell:
         self.machine = PackMLMachine({State.EXECUTE: execute}, initial=initial)
         self.commands: list[UnitCommand] = []
         heartbeat = LineHeartbeat(Plc().heartbeat_timeout_s, lambda: None)
-        self.port = PlcInterface(Plc(port=0), self.submit, heartbeat, self.remember, previous_seq=1)
+        self.port = PlcInterface(
+            Plc(port=0),
+            self.submit,
+            heartbeat,
+            self.remember,
+            note_refusal=lambda *_: None,
+            previous_seq=1,
+        )
         self.tracker = CommandTracker(self.machine, lambda: result)
         self.machine.on_change.append(lambda _before, _after: self.publish())
         self.status = CellStatus()

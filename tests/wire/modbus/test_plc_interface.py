@@ -1,7 +1,7 @@
 """The line's interface as an outside Modbus client sees it."""
 
 import asyncio
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Mapping
 from functools import partial
 
 import pytest
@@ -17,6 +17,7 @@ from cellctl.errors.line import LineTaskDied
 from cellctl.errors.link import ConnectTimeout
 from cellctl.packml import Command, PackMLMachine, RejectCode, State
 from cellctl.packml.result import Result
+from cellctl.packml.unit_command import UnitCommand
 from cellctl.runtime.cell_status import CellStatus
 from tests.rigs.waiting import until_answer
 
@@ -30,6 +31,8 @@ class Line:
     def __init__(self) -> None:
         self.commands: list[LineSubmission] = []
         """Commands in the order in which they were executed."""
+        self.noted: list[tuple[int | str, RejectCode]] = []
+        """Commands that were given up before they were submitted, with why."""
         self.answer: Callable[[LineSubmission], RejectCode] = lambda _submission: RejectCode.NONE
         self.disk = asyncio.Event()
         self.disk.set()
@@ -66,8 +69,18 @@ class Line:
     def interface(self, config: Plc, previous_seq: int | None = None) -> PlcInterface:
         heartbeat = LineHeartbeat(config.heartbeat_timeout_s, self.lost.set)
         return PlcInterface(
-            config, self.submit, heartbeat, self.remember, previous_seq=previous_seq
+            config,
+            self.submit,
+            heartbeat,
+            self.remember,
+            note_refusal=self.note_refusal,
+            previous_seq=previous_seq,
         )
+
+    def note_refusal(
+        self, _command: UnitCommand, code: RejectCode, details: Mapping[str, int | str]
+    ) -> None:
+        self.noted.append((details["seq"], code))
 
     async def open(
         self, *, previous_seq: int | None = None, timeout_s: float = 5.0
@@ -352,6 +365,7 @@ async def test_a_flood_of_commands_drops_the_oldest_with_an_answer_but_no_abort(
     for seq in range(1, 21):
         await line.command(client, seq, Command.HOLD)
     assert answers == [(seq, RejectCode.SUPERSEDED) for seq in (2, 3, 4)]
+    assert line.noted == answers, "the audit log is told of what no arbiter has seen"
     await line.command(client, 21, Command.ABORT)
     for seq in range(22, 42):
         await line.command(client, seq, Command.HOLD)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from datetime import datetime
 
 from cellctl.fault_catalogue import known_fault
+from cellctl.records.entered.said_by import was_obeyed
 from cellctl.records.entries import Alarm, AuditEntry, RunRecord, RunResult
 from cellctl.records.report.text import MISSING, when
 
@@ -37,7 +38,8 @@ def fault_box(record: RunRecord, audit: Sequence[AuditEntry]) -> FaultBox | None
     command = _BY_COMMAND.get(RunResult(head.result))
     if command is None:
         return None
-    given = next((entry for entry in reversed(audit) if entry.action == command), None)
+    obeyed = (one for one in reversed(audit) if one.action == command and was_obeyed(one))
+    given = next(obeyed, None)
     who = "it is not recorded by whom" if given is None else f"by {given.actor}, {when(given.time)}"
     return FaultBox(f"Ended by the command {command}, {who}", _last_step(record), MISSING, MISSING)
 

@@ -3,14 +3,21 @@ surroundings."""
 
 from collections.abc import Iterator, Sequence
 
+from cellctl.packml.unit_command import Source
 from cellctl.records.entered.notes import SURROUNDINGS, remark_of, surroundings
-from cellctl.records.entered.said_by import said_by
-from cellctl.records.entries import AuditEntry, RunHead
+from cellctl.records.entered.said_by import ORDER, said_by, was_obeyed
+from cellctl.records.entries import MAINTENANCE, AuditEntry, RunHead
 from cellctl.records.report.acceptance.runs_before import RunBefore, words_of_runs_before
 from cellctl.records.report.sections import FactList, Part, ReportSection
 from cellctl.records.report.text import duration, number, when, with_unit
 
 UNKNOWN = "not recorded"
+_GIVEN_BY = {
+    Source.TERMINAL: "at the terminal `cellctl start --order ORDER` gives it",
+    Source.LINE: "the line gives it in its register order, holding 18 to 25",
+    Source.PAGE: "the operator page asks for none; key order of its HTTP API gives it",
+}
+"""How an order comes with a Start, by the source of that."""
 SIGNATURES = ("performed by", "inspected by", "accepted by")
 """Who signs a report by hand."""
 
@@ -28,11 +35,12 @@ def identification(
     of its part.
     """
     named = parts or (Part("part", head.serial),)
-    started = next((entry.actor for entry in audit if entry.action == "start"), UNKNOWN)
+    starts = (one for one in audit if one.action == "start" and was_obeyed(one))
+    start = next(starts, None)
     facts = (
         *((f"serial number, {part.role}", part.serial or UNKNOWN) for part in named),
-        ("order or operator, as named with Start", head.operator or UNKNOWN),
-        ("started by", started),
+        ("order, as given with Start", _order(head, start)),
+        ("started by", UNKNOWN if start is None else start.actor),
         ("run", str(head.number)),
         ("process", head.process),
         ("recipe", f"{head.recipe_id} · {head.recipe_name}"),
@@ -47,6 +55,22 @@ def identification(
         *_remarks(notes),
     )
     return ReportSection("Identification", (FactList(facts),))
+
+
+def _order(head: RunHead, start: AuditEntry | None) -> str:
+    """The order that was given with the Start of a run; where none was, how one is given."""
+    if start is None:
+        return head.operator or UNKNOWN
+    given = start.detail.get(ORDER)
+    if not given and head.operator != start.actor:
+        # A Start without an order leaves its person in this place, who has a line of their own.
+        given = head.operator
+    if given:
+        return str(given)
+    if MAINTENANCE in (head.process, head.mode):
+        return "none: procedures have none"
+    how = [words for source, words in _GIVEN_BY.items() if start.actor.startswith(source)]
+    return "; ".join(("none was given", *how))
 
 
 def _surroundings(notes: Sequence[AuditEntry]) -> Iterator[tuple[str, str]]:

@@ -5,7 +5,7 @@ from datetime import datetime, timedelta
 from typing import Any
 
 from cellctl.records.entered.notes import NOTE, note_words
-from cellctl.records.entered.said_by import BY, GAUGE, measured_by, said_by
+from cellctl.records.entered.said_by import BY, GAUGE, measured_by, said_by, was_obeyed
 from cellctl.records.entries import Alarm, AuditEntry, RunRecord
 from cellctl.records.procedure_entries import MADE_BY_PROCEDURES
 from cellctl.records.report.sections import Note, ReportSection, ReportTable, TableCell, TableRow
@@ -29,7 +29,9 @@ def during(record: RunRecord, audit: Sequence[AuditEntry]) -> tuple[AuditEntry, 
     ]
     # The last start is that of this run, since nothing is started while it lasts; what was
     # commanded before that belongs to another one.
-    starts = [index for index, entry in enumerate(within) if entry.action == "start"]
+    starts = [
+        index for index, one in enumerate(within) if one.action == "start" and was_obeyed(one)
+    ]
     return tuple(within[starts[-1] :] if starts else within)
 
 

@@ -23,9 +23,10 @@ from cellctl.api.local_socket.messages import (
     parse_request,
     to_line,
 )
-from cellctl.api.local_socket.page_desk import AT_A_PANEL, NOTED_A_MINUTE, refusal
+from cellctl.api.local_socket.page_desk import AT_A_PANEL, refusal
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.terminal import Terminal
+from cellctl.command.refusal_notes import NOTED_A_MINUTE
 from cellctl.errors.link import LinkLost
 from cellctl.errors.local import NotThePage
 from cellctl.guard.report import GuardTrip, TripReason

@@ -126,8 +126,15 @@ async def test_refusals_have_the_lines_codes(
     await rig.idle()
     answer = await operator.ask(request_)
     assert isinstance(answer, Refused)
+    name = request_.request
     assert (answer.code, answer.text, answer.state) == (code, code.text, "IDLE")
     assert rig.unit.machine.state is State.IDLE
+    await rig.unit.background.drain()
+    who, action, detail = (await rig.archive.do(audit))[-1]
+    assert (who, action) == (ME, {"procedure": "start", "acknowledge": "set"}.get(name, name))
+    assert (detail["refused"], detail["reject_code"], detail["state"]) == (code.text, code, "idle")
+    typed = request_.recipe if isinstance(request_, StartCommand) else ""
+    assert detail.get("recipe_named", "") == (typed if code is RejectCode.RECIPE_UNKNOWN else "")
 
 
 async def test_a_mode_that_is_set_already_is_reached(rig: DaemonRig, operator: Operator) -> None:

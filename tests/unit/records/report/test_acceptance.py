@@ -183,6 +183,7 @@ def test_a_run_that_somebody_ended_names_him(store: RunStore, tmp_path: Path) ->
     store.audit("terminal:lin", "start", {"serial": "SAT-0001"})
     run = start(store)
     store.audit("terminal:wei", "abort", {})
+    store.audit("terminal:bo", "abort", {"refused": "not in this state"})
     store.close_run(run, RunResult.ABORTED)
     page = text_of(export_run(store, run, tmp_path))
     assert re.search(r"Ended by the command abort, by terminal:wei, \d{4}-", page)
@@ -195,12 +196,13 @@ def test_the_timeline_has_only_what_belongs_to_the_run(store: RunStore) -> None:
     store.audit("line", "reset", {})
     store.audit("OP-7", "start", {"serial": "SAT-0001"})
     run = start(store)
+    store.audit("OP-8", "start", {"serial": "SAT-0001", "refused": "not in this state"})
     store.close_run(run, RunResult.GOOD)
     store.audit("line", "reset", {})
     record, log = store.run(run), store.audit_log()
-    assert [entry.actor for entry in during(record, log)] == ["OP-7"]
+    assert [entry.actor for entry in during(record, log)] == ["OP-7", "OP-8"]
     late = [entry for entry in log if entry.time > record.head.started - timedelta(0)]
-    assert during(record, late) == ()
+    assert [entry.actor for entry in during(record, late)] == ["OP-8"], "which started nothing"
 
 
 def test_what_somebody_noted_stands_on_the_first_page_and_in_the_timeline(
@@ -241,7 +243,7 @@ def test_parts_and_surroundings_that_nobody_recorded_say_so(
         "serial number, deck SAT-0001",
         "serial number, frame not recorded",
         "temperature, relative humidity, air pressure not recorded",
-        "order or operator, as named with Start OP-7",
+        "order, as given with Start OP-7",
         "started by not recorded",
         "performed by",
         "accepted by",
