@@ -137,7 +137,7 @@ put_help() {
     share=$INTO/usr/share
     mkdir -p "$INTO/usr/local/bin" "$share/man/man1" "$share/bash-completion/completions" \
         "$share/zsh/vendor-completions" "$share/fish/vendor_completions.d"
-    "$1/.venv/bin/python" -m cellctl.cli.man_page >"$share/man/man1/cellctl.1"
+    "$1/.venv/bin/python" -m cellctl.cli.help.man_page >"$share/man/man1/cellctl.1"
     _CELLCTL_COMPLETE=source_bash "$program" >"$share/bash-completion/completions/cellctl"
     _CELLCTL_COMPLETE=source_zsh "$program" >"$share/zsh/vendor-completions/_cellctl"
     _CELLCTL_COMPLETE=source_fish "$program" >"$share/fish/vendor_completions.d/cellctl.fish"

@@ -13,8 +13,8 @@ import typer
 from typer.core import TyperGroup
 
 from cellctl import plugins
-from cellctl.cli.help_groups import OFFLINE, GroupedCommands
-from cellctl.cli.listing import CELL, FILES, OPERATOR, installed
+from cellctl.cli.help.help_groups import OFFLINE, GroupedCommands
+from cellctl.cli.help.listing import CELL, FILES, OPERATOR, installed
 from cellctl.cli.root import new_app
 from cellctl.errors.config import UnknownDriver
 

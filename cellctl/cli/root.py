@@ -4,7 +4,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.help_groups import GroupedCommands
+from cellctl.cli.help.help_groups import GroupedCommands
 
 settings = {"debug": False}
 

@@ -13,9 +13,9 @@ from cellctl.config.base import Section
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.addresses import address_issues
 from cellctl.config.checks.cross_checks import cross_issues
+from cellctl.config.checks.places.taught_poses import taught_pose_issues
 from cellctl.config.checks.protective_times import protective_time_issues
 from cellctl.config.checks.robot_figures import robot_issues
-from cellctl.config.checks.taught_poses import taught_pose_issues
 from cellctl.config.checks.units import unit_issues
 from cellctl.config.checks.zones import zone_issues
 from cellctl.config.document.findings import model_issues, shorten, validated

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.config.key_reference import (
+from cellctl.config.document.key_reference import (
     NEEDED,
     NONE,
     Key,

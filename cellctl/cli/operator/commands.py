@@ -2,7 +2,7 @@
 
 import typer
 
-from cellctl.cli.help_groups import OPERATE
+from cellctl.cli.help.help_groups import OPERATE
 from cellctl.cli.operator import alarms, operate, status
 from cellctl.cli.root import new_app
 

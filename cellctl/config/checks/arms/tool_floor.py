@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.sensor_places import straight_mm
+from cellctl.config.checks.places.sensor_places import straight_mm
 from cellctl.config.driver_settings import robot_driver
 from cellctl.config.issue import ConfigIssue
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import (
+from cellctl.config.checks.places.over_places import (
     ChainedPose,
     Over,
     over_place_issues,

@@ -15,7 +15,7 @@ from scipy.spatial.transform import RigidTransform, Rotation
 from cellctl.calibration.pose_record import pose_from_record
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import ChainedPose, Over, over_place_issues
+from cellctl.config.checks.places.over_places import ChainedPose, Over, over_place_issues
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.recipe import AntennaRecipe, Place

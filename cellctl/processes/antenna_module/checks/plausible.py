@@ -9,8 +9,8 @@ from typing import Any, cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound
 from cellctl.config.checks.bounds.contradiction import contradictions
-from cellctl.config.checks.flange_places import flange_place_issues
-from cellctl.config.checks.sensor_places import sensor_bounds
+from cellctl.config.checks.places.flange_places import flange_place_issues
+from cellctl.config.checks.places.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import pose_from_xyzabc

@@ -13,7 +13,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.store.readable_record import readable_record
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import BESIDE_MM, TURNED_DEG, flange_at
+from cellctl.config.checks.places.over_places import BESIDE_MM, TURNED_DEG, flange_at
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.antenna_module.recipe import AntennaRecipe

@@ -7,8 +7,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound
-from cellctl.config.checks.flange_places import box_of
-from cellctl.config.checks.over_places import about
+from cellctl.config.checks.places.flange_places import box_of
+from cellctl.config.checks.places.over_places import about
 from cellctl.config.driver_settings import motion_bounds, robot_driver
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.box import Box

@@ -10,8 +10,8 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound, at_most
 from cellctl.config.checks.bounds.contradiction import contradictions
-from cellctl.config.checks.flange_places import deepest_mm, flange_place_issues
-from cellctl.config.checks.over_places import over_place_issues
+from cellctl.config.checks.places.flange_places import deepest_mm, flange_place_issues
+from cellctl.config.checks.places.over_places import over_place_issues
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM, pose_from_xyzabc

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound
+from cellctl.config.checks.places.sensor_places import sensor_bounds, straight_mm
 from cellctl.config.checks.plausible.loads import G_M_S2
-from cellctl.config.checks.sensor_places import sensor_bounds, straight_mm
 from cellctl.config.driver_settings import measuring_range
 from cellctl.geometry.pose import MM
 from cellctl.processes.peg_in_hole.cycle import greatest_before_n

@@ -7,8 +7,8 @@ from typing import cast
 
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.arms.tool_floor import tool_floor_remarks
-from cellctl.config.checks.over_places import unmeasured_height
-from cellctl.config.checks.sensor_places import straight_mm
+from cellctl.config.checks.places.over_places import unmeasured_height
+from cellctl.config.checks.places.sensor_places import straight_mm
 from cellctl.config.issue import ConfigIssue
 from cellctl.processes.peg_in_hole.plan.cycle_plan import search_task
 from cellctl.processes.peg_in_hole.plausible.fit import far_touches, wide_clearance

@@ -6,7 +6,7 @@ from math import degrees, hypot
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.config.cell import CellConfig
-from cellctl.config.checks.over_places import ChainedPose, Over, flange_at
+from cellctl.config.checks.places.over_places import ChainedPose, Over, flange_at
 from cellctl.config.issue import ConfigIssue, WrittenValue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
 from cellctl.processes.peg_in_hole.insertion.keyway import sweep_rad

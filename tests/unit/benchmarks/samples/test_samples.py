@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from benchmarks.samples import images, plugging, poses
 from cellctl.cli.commands import whole_app
-from cellctl.cli.help_groups import OFFLINE
+from cellctl.cli.help.help_groups import OFFLINE
 
 ROOT = Path(__file__).parents[4]
 SAMPLES = ROOT / "config" / "samples"

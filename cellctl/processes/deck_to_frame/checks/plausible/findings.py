@@ -8,7 +8,7 @@ from typing import cast
 from cellctl.config.cell import CellConfig
 from cellctl.config.checks.bounds.bound import Bound
 from cellctl.config.checks.bounds.contradiction import contradictions
-from cellctl.config.checks.sensor_places import sensor_bounds
+from cellctl.config.checks.places.sensor_places import sensor_bounds
 from cellctl.config.issue import ConfigIssue
 from cellctl.config.recipe import Recipe
 from cellctl.geometry.pose import MM

@@ -7,9 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.config.key_reference import KeyTable, cell_file_tables, driver_tables, process_tables
+from cellctl.config.document.key_reference import (
+    KeyTable,
+    cell_file_tables,
+    driver_tables,
+    process_tables,
+)
 
-CONFIG = Path(__file__).parents[3] / "config"
+CONFIG = Path(__file__).parents[4] / "config"
 SHIPPED = sorted(
     path for path in CONFIG.glob("*.toml") if not path.stem.endswith((".scenario", ".model"))
 )

@@ -13,14 +13,14 @@ import typer
 from typer.testing import CliRunner
 
 from cellctl.cli import commands
-from cellctl.cli.listing import BROUGHT, CELL, FILES, OPERATOR, Listed
+from cellctl.cli.help.listing import BROUGHT, CELL, FILES, OPERATOR, Listed
 from cellctl.cli.operator import commands as operator_commands
 from cellctl.records import RunStore
 from cellctl.version import software
 from tests.rigs.sweeps import sweep
 from tests.unit.records.sample import good_run
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 
 
 def test_every_command_is_listed_once_and_no_other() -> None:

@@ -7,7 +7,7 @@ of them. A test compares the names with the commands that there are.
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from cellctl.cli.help_groups import OFFLINE, OPERATE
+from cellctl.cli.help.help_groups import OFFLINE, OPERATE
 
 _CELL, _RECORDS, INSTALLED = "The cell", "Records and faults", "From installed packages"
 

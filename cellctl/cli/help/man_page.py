@@ -1,4 +1,4 @@
-"""The manual page, `man cellctl`, made from the commands: `python -m cellctl.cli.man_page`.
+"""The manual page, `man cellctl`, made from the commands: `python -m cellctl.cli.help.man_page`.
 
 Written with the macros of man(7). All commands are loaded for it, which takes seconds; it is made
 once, by the installation.
