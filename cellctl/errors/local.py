@@ -50,6 +50,19 @@ class DaemonNotReached(LocalError):
     remedy += "the group."
 
 
+class DaemonSlow(LocalError):
+    """The daemon has taken the connection, and has not answered in time."""
+
+    number = 721
+    text = "The daemon is slow to answer"
+    cause = "Its process runs, and other programs want the processors, its disk is slow, or it "
+    cause += "hangs or was suspended."
+    remedy = "If anything moves that should stand, press the emergency stop. Ask again by "
+    remedy += "`cellctl status` before you repeat a command: it may have been taken. On a busy PC "
+    remedy += "end other programs, or move them to another PC. If the daemon answers nothing for a "
+    remedy += "minute, look for `event loop held` in its log, then restart it while the arms stand."
+
+
 class StopNotDelivered(LocalError):
     """A Stop or an Abort of which nobody says that it was taken: the arms may move on."""
 

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+from cellctl.api.local_socket.device_links import device_links
 from cellctl.cell.devices import Cell
 from cellctl.clock import now_s
 from cellctl.command.arbiter import CommandArbiter
@@ -133,8 +134,6 @@ class LiveView:
         codes = permitted(
             self._unit.machine, self._unit.factory, line_alive=self._arbiter.line_alive
         )
-        links = {name: _problem(check) for name, check in self._cell.health_checks().items()}
-        links |= _answers(self._cell)
         return {
             "daemon": self._daemon(),
             "guards": {name: _guard(guard) for name, guard in self._cell.guards.items()},
@@ -142,7 +141,7 @@ class LiveView:
                 name: {"code": int(code), "reason": code.text if code else ""}
                 for name, code in codes.items()
             },
-            "links": links,
+            "links": device_links(self._cell, self._unit.machine.faults),
         }
 
     def _force(self, name: str, time_s: float, status: CellStatus) -> Object:
@@ -252,27 +251,3 @@ def _taken(command: TakenCommand | None) -> Object | None:
         return None
     time = command.time.isoformat(timespec="milliseconds")
     return {"who": command.who, "command": command.name, "time": time}
-
-
-def _answers(cell: Cell) -> dict[str, str]:
-    """By device that reports nothing by itself: why it did not answer when it was asked last.
-
-    Nothing before all devices are connected: none of them was asked then.
-    """
-    kinds: dict[str, Iterable[str]] = {
-        "stereo_cameras": cell.stereo_cameras,
-        "cameras": cell.cameras,
-        "trackers": cell.trackers,
-        "grippers": cell.grippers,
-        "digital_ios": cell.digital_ios,
-    }
-    asked = [(kind, name) for kind, names in kinds.items() for name in names if cell.connected]
-    return {f"{kind}.{name}": str(cell.unanswered.get(name, "")) for kind, name in asked}
-
-
-def _problem(check: Any) -> str:
-    try:
-        check()
-    except CellError as error:
-        return str(error)
-    return ""

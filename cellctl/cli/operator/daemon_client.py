@@ -1,6 +1,8 @@
 """Client of the local API: brings the commands of the operator to the daemon."""
 
+import os
 import socket
+import struct
 import time
 from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
@@ -27,6 +29,7 @@ from cellctl.errors.local import (
     CommandMissedItsGoal,
     CommandRefused,
     DaemonNotReached,
+    DaemonSlow,
     MessageMalformed,
 )
 
@@ -48,7 +51,8 @@ class DaemonClient:
         self._now_s = clock
 
     def status(self) -> StatusReport:
-        """The cell at this moment; raises ``DaemonNotReached`` or ``MessageMalformed``."""
+        """The cell at this moment; raises ``DaemonNotReached``, ``DaemonSlow`` or
+        ``MessageMalformed``."""
         answer = self._ask(StatusRequest())
         if not isinstance(answer, StatusAnswer):
             raise MessageMalformed(f"no status: {answer}")
@@ -92,13 +96,19 @@ class DaemonClient:
             time.sleep(_PATIENT_POLL_S if end_s is None else _POLL_S)
 
     def _ask(self, request: Request, answer_s: float = ANSWER_S) -> Answer:
+        begun_s, process = now_s(), ""
         try:
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as connection:
                 connection.settimeout(answer_s)
                 connection.connect(str(self._path))
+                process = _process(connection)
                 connection.sendall(to_line(request))
                 with connection.makefile("rb") as lines:
                     line = lines.readline(ANSWER_LIMIT)
+        # Somebody holds the socket: the connection was taken, or waits behind others.
+        except (TimeoutError, BlockingIOError) as error:
+            waited = f"{self._path}: no answer within {now_s() - begun_s:.1f} s"
+            raise DaemonSlow("; ".join(filter(None, (waited, process, _load())))) from error
         except OSError as error:
             searched = "" if self._named else f"; searched {socket_places()}"
             facts = f"{self._path}: {error.strerror or error}{searched}"
@@ -111,6 +121,26 @@ class DaemonClient:
         if isinstance(answer, Failed):
             raise MessageMalformed(answer.text)
         return answer
+
+
+def _process(connection: socket.socket) -> str:
+    """The process that listens, and whether it was suspended; empty where it cannot be told."""
+    format_ = "3i"
+    found = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, struct.calcsize(format_))
+    number = struct.unpack(format_, found)[0]
+    try:
+        state = Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[0]
+    except (OSError, IndexError):
+        return ""
+    return f"process {number} is {'suspended' if state in 'Tt' else 'alive'}"
+
+
+def _load() -> str:
+    processors = len(os.sched_getaffinity(0))
+    return (
+        f"in the last minute {os.getloadavg()[0]:.1f} programs on average wanted the "
+        f"{processors} processors of this PC"
+    )
 
 
 def _refusal(answer: Refused) -> Iterator[str]:

@@ -19,7 +19,12 @@ from cellctl.api.local_socket.messages import (
 from cellctl.api.local_socket.report import StatusReport
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
-from cellctl.errors.local import CommandMissedItsGoal, DaemonNotReached, StopNotDelivered
+from cellctl.errors.local import (
+    CommandMissedItsGoal,
+    DaemonNotReached,
+    DaemonSlow,
+    StopNotDelivered,
+)
 from cellctl.errors.records import StoreUnavailable
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
@@ -156,7 +161,7 @@ def _end_motion(socket: SocketOption, name: PlainName, goal: Collection[str]) ->
     must not look for its socket first."""
     try:
         _plain(socket, name, goal)
-    except DaemonNotReached as error:
+    except (DaemonNotReached, DaemonSlow) as error:
         raise StopNotDelivered(error.detail) from error
 
 

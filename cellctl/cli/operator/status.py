@@ -11,7 +11,7 @@ from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.operator.status_screen import last_seen, screen
 from cellctl.clock import utc_now
-from cellctl.errors.local import DaemonNotReached
+from cellctl.errors.local import DaemonNotReached, DaemonSlow
 
 _PERIOD_S = 1.0
 
@@ -47,7 +47,7 @@ def _follow(client: DaemonClient) -> None:
                     live.update(screen(report, seen), refresh=True)
                 # The operator must not be left with a screen that looks alive. A daemon that is
                 # started again is shown again.
-                except DaemonNotReached as away:
+                except (DaemonNotReached, DaemonSlow) as away:
                     live.update(last_seen(report, seen, away), refresh=True)
         except KeyboardInterrupt:
             return

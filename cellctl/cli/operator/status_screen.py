@@ -15,6 +15,7 @@ from cellctl.api.local_socket.report import (
 )
 from cellctl.cli.operator.no_end import without_end
 from cellctl.errors import CellError
+from cellctl.errors.force import GuardDied, GuardRefused
 from cellctl.records.outcome import outcome
 
 _COLOURS = {
@@ -47,6 +48,9 @@ _NEXT_IN_IDLE = {
 }
 _NO_RUN = frozenset({"IDLE", "STOPPED", "ABORTED", "COMPLETED", "RESETTING", "CLEARING"})
 """States in which what was measured is of a run that has ended."""
+_GUARDED = "force_sensors."
+"""Links of force sensors are those of their guards."""
+_OF_GUARD = frozenset({GuardDied.number, GuardRefused.number})
 _BEGINS = {"PRODUCTION": "start", "MAINTENANCE": "procedure"}
 _CONTROL = {
     "line": "line PLC; here only Stop, Abort, Hold, Clear and alarms",
@@ -122,8 +126,14 @@ def pressing(report: StatusReport) -> tuple[str, ...]:
 
 
 def _guard(report: StatusReport) -> Text:
-    if report.guard_trip or not report.guard_touch:
-        return _well(report.guard_trip and f"stop requested: {report.guard_trip}")
+    # A guard that does not run has no trip, and is not good for that.
+    problems = [text for name, text in report.links.items() if name.startswith(_GUARDED) and text]
+    latched = [fault.text for fault in report.faults if fault.number in _OF_GUARD]
+    problems += [text for text in latched if text not in problems]
+    if report.guard_trip:
+        problems.insert(0, f"stop requested: {report.guard_trip}")
+    if problems or not report.guard_touch:
+        return _well("; ".join(problems))
     return Text(f"good; stopped at the touch that the step looks for: {report.guard_touch}")
 
 

@@ -68,7 +68,9 @@ LOOP_LATE = _gauge(
     "daemon_loop_late_seconds", "s", "latest turn of the daemon's event loop within 15 s"
 )
 DAEMON_BYTES = _gauge("daemon_resident_bytes", "B", "memory of the daemon, without its children")
-LINK_UP = _gauge("link_up", "", "1 while the link of a device is whole", "device")
+LINK_UP = _gauge(
+    "link_up", "", "1 while a device answers and no fault of its link is latched", "device"
+)
 CALIBRATION_EXPIRY = _gauge(
     "calibration_expiry_timestamp_seconds", "s since 1970", "end of a calibration", "kind"
 )

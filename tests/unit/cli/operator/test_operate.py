@@ -6,6 +6,7 @@ import json
 import os
 import re
 import shlex
+import socket
 import subprocess
 import sys
 import time
@@ -45,6 +46,7 @@ from cellctl.errors.local import (
     CommandMissedItsGoal,
     CommandRefused,
     DaemonNotReached,
+    DaemonSlow,
     MessageMalformed,
     StopNotDelivered,
 )
@@ -364,6 +366,23 @@ def test_what_takes_too_long_is_not_waited_for(
     client.command(PlainCommand(request="reset"))
     with pytest.raises(CommandMissedItsGoal, match="still RESETTING after 60 s"):
         client.settled()
+
+
+@pytest.mark.parametrize("command", ["status", "abort"])
+def test_a_daemon_that_is_there_and_slow_is_told_from_one_that_is_not(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, command: str
+) -> None:
+    monkeypatch.setattr(DaemonClient._ask, "__defaults__", (0.2,))
+    path = tmp_path / "s"
+    with socket.socket(socket.AF_UNIX) as listener:
+        listener.bind(str(path))
+        listener.listen()
+        done = cellctl(command, "--socket", str(path))
+    assert fault_of(done) is (DaemonSlow if command == "status" else StopNotDelivered)
+    facts = str(done.exception)
+    assert re.search(r": no answer within 0\.[2-9] s; ", facts), facts
+    assert f"process {os.getpid()} is alive" in facts
+    assert re.search(r"[\d.]+ programs on average wanted the \d+ processors", facts)
 
 
 def test_no_daemon_is_a_numbered_fault(tmp_path: Path) -> None:

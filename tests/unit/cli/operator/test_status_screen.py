@@ -1,9 +1,22 @@
 """Lines of `cellctl status` that have nothing to show."""
 
-from cellctl.api.local_socket.report import AxisReport, ForceReport, RunReport, StatusReport
-from cellctl.cli.operator.status_screen import _force, _measured
+from typing import Any
+
+import pytest
+
+from cellctl.api.local_socket.report import (
+    AxisReport,
+    FaultReport,
+    ForceReport,
+    RunReport,
+    StatusReport,
+)
+from cellctl.cli.operator.status_screen import _force, _measured, _rows
 from cellctl.clock import utc_now
 from tests.unit.cli.agreeable import AT_REST
+
+STARTING = "F510 Force guard is not running: no guard process"
+DIED = FaultReport(number=510, text="F510 Force guard is not running", cause="", remedy="")
 
 
 def test_a_force_that_is_not_shown_says_why() -> None:
@@ -33,3 +46,27 @@ def test_figures_of_a_run_that_has_ended_name_it() -> None:
     assert str(rows["errors"]) == "of run 3, which has ended, part against target: x 8.0000 mm"
     rows = dict(_measured(StatusReport(**{**shows, "state": "EXECUTE"})))
     assert str(rows["errors"]) == "x 8.0000 mm"
+
+
+@pytest.mark.parametrize(
+    ("shows", "said"),
+    [
+        ({}, "good"),
+        ({"links": {"robots.main": "", "force_sensors.force": STARTING}}, STARTING),
+        ({"faults": (DIED,)}, DIED.text),
+        ({"links": {"force_sensors.force": DIED.text}, "faults": (DIED,)}, DIED.text),
+        (
+            {"guard_trip": "raw limit", "links": {"force_sensors.force": "F502"}},
+            "stop requested: raw limit; F502",
+        ),
+        (
+            {"guard_touch": "touch: after 12 ms"},
+            "good; stopped at the touch that the step looks for: touch: after 12 ms",
+        ),
+    ],
+)
+def test_a_guard_is_good_only_while_nothing_is_wrong_with_it(
+    shows: dict[str, Any], said: str
+) -> None:
+    rows = dict(_rows(StatusReport(**AT_REST | shows)))
+    assert str(rows["guard"]) == said
