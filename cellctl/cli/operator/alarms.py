@@ -9,18 +9,27 @@ from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.operator.status_screen import with_time
+from cellctl.cli.records.plain_json import as_plain
 from cellctl.errors.base import fault_number
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 
 
 @app.callback(invoke_without_command=True)
-def list_alarms(context: typer.Context, socket: SocketOption = None) -> None:
+def list_alarms(
+    context: typer.Context,
+    socket: SocketOption = None,
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
+) -> None:
     """List the active alarms with what to do; `acknowledge` takes one off the list."""
     if context.invoked_subcommand is not None:
         return
-    console = console_of_lines()
     alarms = DaemonClient(socket).status().alarms
+    if as_json:
+        typer.echo(as_plain([alarm.model_dump() for alarm in alarms]))
+        return
+    console = console_of_lines()
     for alarm in alarms:
         print_hanging(console, with_time(alarm), 5, "yellow")
         print_hanging(console, f"  cause:  {alarm.cause}", 10)

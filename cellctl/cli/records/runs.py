@@ -151,6 +151,8 @@ def gauge(
 def verify(
     data_dir: DataDir = None,
     head: Annotated[str, typer.Option(help="LENGTH:HASH, as printed on a report.")] = "",
+    *,
+    as_json: AsJson = False,
 ) -> None:
     """Check that nothing that is sealed was changed, files included; exit code 1 if it was.
 
@@ -161,6 +163,9 @@ def verify(
     with opened_store(data_dir) as store:
         problems = store.verify(printed)
         newest = store.ledger_head()
+    if as_json:
+        typer.echo(as_plain({"problems": problems, "ledger_head": str(newest)}))
+        raise typer.Exit(1 if problems else 0)
     for problem in problems:
         typer.echo(problem)
     if problems:

@@ -6,6 +6,9 @@ import numpy as np
 
 from cellctl.geometry.pose import Array
 
+FINAL_S = 0.5
+"""Stretch at the end of a curve that stands for the seated part."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ForceCurve:
@@ -32,13 +35,13 @@ class CurveStatistics:
     peak_lateral_n: float
     peak_moment_n_m: float
     final: Array
-    """Shape (6,): mean over the last ``final_s``."""
+    """Shape (6,): mean over the last ``FINAL_S``."""
     final_sigma: Array
     """Shape (6,): standard deviation of the samples there."""
 
 
 def curve_statistics(
-    time_s: Array, wrench: Array, *, filter_s: float = 5e-3, final_s: float = 0.5
+    time_s: Array, wrench: Array, *, filter_s: float = 5e-3, final_s: float = FINAL_S
 ) -> CurveStatistics:
     """Statistics of n ≥ 2 samples, ``wrench`` of shape (n, 6); ``ValueError`` for other shapes.
 

@@ -10,6 +10,7 @@ from typing import Any
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
 from cellctl.errors.records import RecordNotWritten
+from cellctl.records.entered.gauges import PART_VERDICT, part_verdict
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.export import document
@@ -133,7 +134,8 @@ def _head(record: RunRecord) -> dict[str, str]:
         "operator": head.operator, "SIMULATED": head.simulated,
         "started": head.started.isoformat(),
         "ended": "" if head.ended is None else head.ended.isoformat(),
-        "result": head.result or "open", "fault": head.fault or "",
+        "result": head.result or "open",
+        PART_VERDICT: part_verdict(record) or "open", "fault": head.fault or "",
         "seal": "" if record.seal is None else record.seal.hash,
     }  # fmt: skip
     calibrations = {f"calibration {kind}": one for kind, one in head.calibration_ids.items()}

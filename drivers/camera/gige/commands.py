@@ -1,6 +1,7 @@
 """``cellctl devices``: the cameras that GenTL producers see, with what a cell file needs."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -30,6 +31,8 @@ def devices(
         typer.Option(help=f"Producer of a camera maker (.cti); default: {PRODUCER_PATH}."),
     ] = None,
     timeout_s: Annotated[float, typer.Option(help="For each producer.", min=1.0)] = 20.0,
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="For programs.")] = False,
 ) -> None:
     """List the cameras that GenTL producers see; opens none of them."""
     files = producer_files(tuple(producer or ()))
@@ -46,6 +49,9 @@ def devices(
         raise failed[0]
     for fault in failed:
         typer.echo(str(fault), err=True)
+    if as_json:
+        typer.echo(json.dumps([_plain(one) for one in seen], indent=2, ensure_ascii=False))
+        return
     if not seen:
         typer.echo("no camera is seen: look at its power, its cable, its subnet and the firewall")
         return
@@ -65,6 +71,10 @@ def _seen_by(producer: Path, timeout_s: float) -> tuple[SeenCamera, ...]:
     if not isinstance(answer, CamerasSeen):
         raise ReplyTimeout(f"{type(answer).__name__} for a list of cameras")
     return answer.cameras
+
+
+def _plain(camera: SeenCamera) -> dict[str, str]:
+    return asdict(camera) | {"producer": str(camera.producer), "state": camera.state.value}
 
 
 def _table(cameras: list[SeenCamera]) -> Table:

@@ -1,5 +1,6 @@
 """`cellctl devices` shows what a cell file needs, and says what to do where it shows nothing."""
 
+import json
 import tomllib
 from pathlib import Path
 
@@ -39,6 +40,9 @@ def test_cameras_are_listed_with_a_piece_of_a_cell_file(producer: Path, fakes: F
     assert rows(said)[LEFT].split()[-3:] == ["in", "use", producer.name]
     assert rows(said)[RIGHT].split()[-2:] == ["free", producer.name]
     assert {"left", "eye", "192.168.10.21"} <= set(rows(said)[LEFT].split())
+    plain = json.loads(ran("--json", "--producer", str(producer)).stdout)
+    assert {one["serial_number"]: one["state"] for one in plain} == {LEFT: "in use", RIGHT: "free"}
+    assert {one["producer"] for one in plain} == {str(producer)}
     piece = said.partition("[cameras.eye]")[2].replace("or both as a stereo head:", "")
     cell = tomllib.loads("[cameras.eye]" + piece)
     # The camera that can be opened now is the one that is proposed.

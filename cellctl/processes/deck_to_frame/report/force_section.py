@@ -6,7 +6,7 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from cellctl.errors.records import RecordingUnreadable
-from cellctl.force.contact.curve import ForceCurve, curve_statistics
+from cellctl.force.contact.curve import FINAL_S, ForceCurve, curve_statistics
 from cellctl.processes.deck_to_frame.record.keys import LIMIT_FORCE, TARGET_FORCE
 from cellctl.processes.deck_to_frame.report.force_plot import force_by_time, force_by_travel
 from cellctl.records.entries import RunRecord
@@ -19,7 +19,6 @@ from cellctl.records.report.sections import (
     ReportBlock,
     ReportSection,
 )
-from cellctl.records.report.text import standard_uncertainty
 from cellctl.records.units import words
 
 
@@ -68,8 +67,11 @@ def _statistics(curve: ForceCurve) -> Sequence[tuple[str, str]]:
         ("peak Fz, mean of 5 ms", f"{figures.peak_filtered_fz_n:.2f} N"),
         ("peak lateral force", f"{figures.peak_lateral_n:.2f} N"),
         ("peak moment", f"{figures.peak_moment_n_m:.2f} N·m"),
+        ("final Fz", f"{figures.final[2]:.2f} N, mean of the last {FINAL_S:g} s"),
+        # No uncertainty of the force, which would have that of the sensor in it: none is known.
         (
-            "final Fz",
-            f"{figures.final[2]:.2f} N, {standard_uncertainty(figures.final_sigma[2], 2)} N",
+            "scatter of the samples in that time",
+            f"{figures.final_sigma[2]:.2f} N, one standard deviation; it says nothing of how true "
+            "the sensor is",
         ),
     ]

@@ -446,11 +446,15 @@ def test_a_daemon_that_dies_is_not_shown_as_if_it_lived(
 
 def test_alarms_are_listed_with_their_remedy(daemon: Agreeable) -> None:
     assert "no alarms" in cellctl("alarms").output
+    assert json.loads(cellctl("alarms", "--json").output) == []
     daemon.shows["alarms"] = (FAULT, ALARM)
     listed = cellctl("alarms").output
     assert "F202 lost: aux_1" in listed
     assert "Find out why." in listed
     assert "F501 silent, since 2026-03-04 05:06:07 UTC" in listed
+    first, second = json.loads(cellctl("alarms", "--json").output)
+    assert (first["number"], first["remedy"]) == (202, FAULT.remedy)
+    assert datetime.fromisoformat(second["since"]) == ALARM.since
 
 
 def test_the_screen_says_what_matters() -> None:

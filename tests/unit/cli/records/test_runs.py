@@ -170,6 +170,11 @@ def test_a_changed_file_is_found(runner: CliRunner, folder: str, store: RunStore
     bad = runner.invoke(app, ["verify", "--data-dir", folder])
     assert bad.exit_code == 1
     assert "frame-head-1-left.png" in bad.stdout
+    told = runner.invoke(app, ["verify", "--json", "--data-dir", folder])
+    assert told.exit_code == 1
+    plain = json.loads(told.stdout)
+    assert plain["problems"] == bad.stdout.splitlines()
+    assert plain["ledger_head"] == str(store.ledger_head())
 
 
 def test_without_a_store_there_is_a_fault_and_none_is_made(

@@ -12,7 +12,8 @@ import pytest
 
 from cellctl.errors.records import RecordNotWritten, RunUnknown
 from cellctl.records import RunStore
-from cellctl.records.entries import RunRecord
+from cellctl.records.entered.gauges import GAUGE_HOLES
+from cellctl.records.entries import Document, RunRecord, RunResult
 from cellctl.records.files.mcap_reading import read_mcap
 from cellctl.records.files.unfinished import MOTION
 from cellctl.records.run_mcap.export import ExportedRun, export_mcap
@@ -194,7 +195,8 @@ def test_an_open_run_says_that_it_is_open(store: RunStore, tmp_path: Path) -> No
     found = export_mcap(store, open_run(store), tmp_path / "run.mcap")
     assert any("still open" in text for text in found.missing)
     assert any(text.startswith("motion.mcap") for text in found.missing)
-    assert read(found.path).metadata["run"]["result"] == "open"
+    head = read(found.path).metadata["run"]
+    assert (head["result"], head["part_verdict"]) == ("open", "open")
 
 
 @pytest.mark.parametrize("name", [MOTION, FILE, "force-1.mcap"])
@@ -212,6 +214,22 @@ def test_a_damaged_file_is_left_out_and_named(
     found = export_mcap(store, run, tmp_path / "run.mcap")
     assert [text.split(":")[0] for text in found.missing] == [name]
     assert read(found.path).of("/figures")
+
+
+def test_the_metadata_tell_a_part_that_its_gauge_has_turned(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = open_run(store)
+    store.add(run, Document(GAUGE_HOLES, {"P1": {"least_mm": 5.8, "most_mm": 6.0}}))
+    store.close_run(run, RunResult.GOOD)
+
+    def verdict() -> tuple[str, str]:
+        head = read(export_mcap(store, run, tmp_path / "run.mcap").path).metadata["run"]
+        return head["result"], head["part_verdict"]
+
+    assert verdict() == ("good", "good")
+    store.set_gauge(run, "P1", 5.7, "OP-7")
+    assert verdict() == ("good", "bad")
 
 
 def test_a_run_without_images_motion_or_figures_is_a_file_all_the_same(

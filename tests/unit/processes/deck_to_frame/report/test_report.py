@@ -264,6 +264,10 @@ def test_a_plus_minus_stands_for_u_and_for_limits_alone(exported: Exported) -> N
     text = " ".join(page.texts)
     assert "u 0.0040" in text
     assert text.count("u is a standard uncertainty") == 1
+    # Noise of the samples is no uncertainty of the force: the first page says that none is known.
+    assert re.search(r"final Fz [\d.]+ N, mean of the last 0.5 s", text)
+    assert re.search(r"scatter of the samples in that time [\d.]+ N, one standard deviation", text)
+    assert not re.search(r"\bu [\d.]+ N\b", text)
 
 
 OLD = Path(__file__).parents[4] / "data" / "store-v1"
