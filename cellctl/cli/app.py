@@ -3,9 +3,9 @@
 import sys
 
 from cellctl.cli.commands import whole_app
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.root import settings
 from cellctl.errors import CellError
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 
 def main() -> None:

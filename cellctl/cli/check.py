@@ -9,7 +9,6 @@ import typer
 from rich.console import Console
 
 from cellctl.cli.commissioning.hints import hints_of_this_pc
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.config import CellConfig
@@ -25,6 +24,7 @@ from cellctl.config.process_definition import installed_processes, process_defin
 from cellctl.config.roles import lacking_roles
 from cellctl.files.hand_written import read_hand_written
 from cellctl.planning.model.read_document import document_issues
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 if TYPE_CHECKING:
     from cellctl.cli.connecting.answer import Answer

@@ -17,6 +17,7 @@ from cellctl.cli.help.help_groups import OFFLINE, GroupedCommands
 from cellctl.cli.help.listing import CELL, FILES, OPERATOR, installed
 from cellctl.cli.root import new_app
 from cellctl.errors.config import UnknownDriver
+from cellctl.terminal.consoles import print_warning
 
 _CELL, _RECORDS = "The cell", "Records and faults"
 _OPERATOR_NAMES = frozenset(listed.name for listed in OPERATOR)
@@ -79,7 +80,7 @@ def _add_from_process(app: typer.Typer, group: str, name: str) -> None:
     except UnknownDriver as fault:
         # The help of all other commands must not fail because one package is incomplete. Whoever
         # asks for this command by its name gets the fault.
-        typer.echo(f"warning: {fault}", err=True)
+        print_warning(str(fault))
 
 
 def _check(app: typer.Typer) -> None:

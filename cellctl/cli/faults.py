@@ -9,10 +9,10 @@ import typer
 from rich.cells import cell_len
 from rich.console import Console
 
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.errors import CellError
 from cellctl.errors.base import Reaction, fault_number
 from cellctl.fault_catalogue import known_faults
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 from cellctl.translations import fault_words
 
 

@@ -18,9 +18,9 @@ from cellctl.cell.lighting.auto_exposure import Looked, found_exposure
 from cellctl.cli.cameras.focus_screen import screen
 from cellctl.cli.cameras.focus_view import FocusView, HolesWanted, looked_at
 from cellctl.cli.cameras.opening import CameraName, CellFile, Chosen, HeadName, chosen
-from cellctl.cli.consoles import console_of_tables
 from cellctl.clock import now_s
 from cellctl.config.devices import AutoExposureConfig
+from cellctl.terminal.consoles import console_of_tables
 from cellctl.vision.camera.exposure_search import light_round_holes, of_all
 
 

@@ -9,10 +9,10 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.doctor.diagnosis import Subject, diagnose
 from cellctl.doctor.finding import Finding, Health
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 _MARKS = {
     Health.GOOD: ("✓", "green"),

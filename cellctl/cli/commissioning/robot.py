@@ -11,7 +11,6 @@ import typer
 from cellctl.cell.robot_reports import listen
 from cellctl.cli.cell_daemon import client_of
 from cellctl.cli.commissioning.one_robot import cell_with, connected
-from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.no_end import without_end
 from cellctl.clock import utc_now
@@ -20,6 +19,7 @@ from cellctl.config.devices import RobotConfig
 from cellctl.config.driver_settings import motion_bounds
 from cellctl.errors.local import DaemonNotReached, MessageMalformed
 from cellctl.procedures.stop_latency import stored_stop_latencies
+from cellctl.terminal.consoles import console_of_lines
 
 Heard = dict[str, dict[str, Any]]
 

@@ -13,7 +13,6 @@ from rich.console import Console
 from cellctl.cell.robot_reports import joints_deg, state_as_json
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.commissioning.one_robot import cell_with, connected
-from cellctl.cli.consoles import console_of_lines
 from cellctl.clock import now_s, utc_now
 from cellctl.config import CellConfig, problems_before_commissioning
 from cellctl.config.document.lines import key_lines
@@ -24,6 +23,7 @@ from cellctl.files.atomic_files import write_durably
 from cellctl.files.hand_written import read_hand_written
 from cellctl.interfaces import Robot, RobotState
 from cellctl.spelling import nearest
+from cellctl.terminal.consoles import console_of_lines
 
 _STILL_S = 0.5
 _STILL_DEG = 0.01

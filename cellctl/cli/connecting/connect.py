@@ -10,9 +10,9 @@ from rich.text import Text
 from cellctl.cli.cell_daemon import require_no_daemon
 from cellctl.cli.connecting.answer import Answer, remedy_here
 from cellctl.cli.connecting.asking import ask_devices
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.config import CellConfig
 from cellctl.errors import CellError
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 LEFT_AS_FOUND = (
     "Nothing was moved, switched, re-armed or acknowledged. The links have ended with this "

@@ -8,7 +8,6 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.fleet.store_option import PasswordFile, StoreUrl, opened_fleet
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_options import (
@@ -25,6 +24,7 @@ from cellctl.cli.records.run_options import (
     wanted_runs,
 )
 from cellctl.cli.records.run_tables import run_row, show_record
+from cellctl.terminal.consoles import console_of_tables
 
 if TYPE_CHECKING:
     from cellctl.fleet.recall import FleetCell, FoundRun

@@ -32,7 +32,6 @@ from cellctl.calibration.solvers.transfer.transfer_mistakes import (
     require_unmistaken,
 )
 from cellctl.calibration.solvers.transfer.transfer_picture import transfer_picture
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.offline.calibrate_cameras import camera, stereo
 from cellctl.cli.offline.calibration_output import Picture, finish
 from cellctl.cli.offline.heads_of_cell import compare_heads
@@ -44,6 +43,7 @@ from cellctl.errors.calibration import AxisMotionInvalid
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 app = typer.Typer(help="Calibrate from files.", no_args_is_help=True, rich_markup_mode=None)
 

@@ -30,7 +30,6 @@ from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.calibration.solvers.stereo.stereo_limits import KnownGeometry, StereoLimits
 from cellctl.calibration.solvers.stereo.stereo_picture import stereo_picture
 from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.offline.board_options import (
     Asymmetric,
     BoardSize,
@@ -46,6 +45,7 @@ from cellctl.cli.offline.calibration_output import Picture, finish
 from cellctl.cli.offline.measure import read_image
 from cellctl.errors.config import FileInvalid
 from cellctl.geometry.pose import MM
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 Shape = Annotated[
     BoardShape | None,

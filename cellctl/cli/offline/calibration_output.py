@@ -10,7 +10,7 @@ from rich.console import Console
 
 from cellctl.calibration.checks import Checks
 from cellctl.calibration.output_file import write_file
-from cellctl.cli.consoles import console_of_lines, print_hanging
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 NOT_PASSED = 3
 """Exit code when a figure of the result is beyond its limit."""

@@ -10,7 +10,6 @@ from rich.console import Console
 from rich.table import Table
 
 from cellctl.calibration.output_file import write_file
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.offline.calibration_output import print_checks
 from cellctl.errors.force import PayloadFileInvalid, PosesDegenerate
 from cellctl.force.gravity.payload_result import PayloadResult, evaluate_payload, payload_document
@@ -20,6 +19,7 @@ from cellctl.force.gravity.signs import lever_check, lever_words
 from cellctl.force.gravity.written_otherwise import scalar_first_hint, unit_hint
 from cellctl.geometry.pose import MM
 from cellctl.procedures.payload_picture import residual_picture
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 NOT_ACCEPTED = 3
 """Exit code when the payload was identified but failed its acceptance."""

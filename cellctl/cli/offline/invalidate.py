@@ -18,6 +18,7 @@ from cellctl.records.entered.said_by import BY
 from cellctl.records.store import RunStore
 from cellctl.runtime.process import calibration_kinds
 from cellctl.spelling import nearest
+from cellctl.terminal.consoles import print_warning
 
 
 def invalidate(
@@ -78,7 +79,7 @@ def _record(
     # A cell that has never run has no store; that must not keep anybody from withdrawing a
     # calibration.
     except StoreUnavailable as error:
-        typer.echo(f"not in the audit log: {error}", err=True)
+        print_warning(f"not in the audit log: {error}")
         return
     with closing(store):
         for stored in found:

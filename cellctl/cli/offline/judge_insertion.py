@@ -13,8 +13,8 @@ import typer
 from cellctl import plugins
 from cellctl.calibration.judged_insertion import InsertionJudge, JudgedInsertion
 from cellctl.calibration.output_file import write_file
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.offline.calibration_output import print_checks
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 NOT_GOOD = 3
 BY_CONNECTOR, BY_TASK = "connector", "task"

@@ -11,8 +11,6 @@ import numpy as np
 import typer
 
 from cellctl.calibration.output_file import write_file
-from cellctl.cli.consoles import console_of_lines, print_hanging
-from cellctl.errors.base import CellError
 from cellctl.errors.config import FileInvalid, OutputNotWritten
 from cellctl.errors.vision import (
     DrawingMirrored,
@@ -24,6 +22,7 @@ from cellctl.errors.vision import (
 )
 from cellctl.geometry.pose import MM
 from cellctl.interfaces.stereo_camera import Image
+from cellctl.terminal.consoles import print_refusal, print_warning
 from cellctl.vision.camera.image_file import read_unchanged
 from cellctl.vision.camera.stereo_head import StereoHead, read_stereo_head
 from cellctl.vision.diameters import other_diameters
@@ -60,7 +59,7 @@ def measure(  # noqa: PLR0917 - the options of the command
         with warnings.catch_warnings(record=True, action="always") as notes:
             stereo_head = read_stereo_head(calibration)
         for note in notes:
-            typer.echo(f"warning: {note.message}", err=True)
+            print_warning(str(note.message))
         holes = _holes(read_features(features), head)
         images = read_image(left), read_image(right)
         result = _measured(images, stereo_head, holes, _method(method))
@@ -73,19 +72,13 @@ def measure(  # noqa: PLR0917 - the options of the command
     # An exit code of its own: a script that scans many images must tell "not in the picture" from a
     # wrong file.
     except (HoleMissing, HoleAmbiguous, TooFewHoles) as fault:
-        _say(fault)
+        print_refusal(fault)
         raise typer.Exit(EXIT_NOT_FOUND) from fault
     except (VisionError, FileInvalid, OutputNotWritten) as fault:
-        _say(fault)
+        print_refusal(fault)
         raise typer.Exit(EXIT_REFUSED) from fault
     if out is None:
         typer.echo(text, nl=False)
-
-
-def _say(fault: CellError) -> None:
-    console = console_of_lines(stderr=True)
-    print_hanging(console, str(fault), 5)
-    print_hanging(console, f"  {fault.remedy}", 2)
 
 
 def _measured(

@@ -13,6 +13,7 @@ from cellctl.config import load_cell
 from cellctl.errors.records import StoreUnavailable
 from cellctl.records.entered.said_by import BY
 from cellctl.records.store import RunStore
+from cellctl.terminal.consoles import print_warning
 
 
 def seal(
@@ -43,7 +44,7 @@ def seal(
     try:
         store = RunStore(data_dir or Path(config.data_dir), create=False)
     except StoreUnavailable as error:
-        typer.echo(f"not in the audit log: {error}", err=True)
+        print_warning(f"not in the audit log: {error}")
         return
     with closing(store):
         detail = {BY: by, "ids": {one.kind: one.id for one in found}}

@@ -5,12 +5,12 @@ from typing import Annotated
 import typer
 
 from cellctl.api.local_socket.messages import AcknowledgeCommand, made
-from cellctl.cli.consoles import console_of_lines, print_hanging
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.operator.status_screen import with_time
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.errors.base import fault_number
+from cellctl.terminal.consoles import console_of_lines, print_hanging
 
 app = typer.Typer(help="List and acknowledge the alarms of the running daemon.")
 

@@ -26,6 +26,7 @@ from cellctl.errors.local import (
     StopNotDelivered,
 )
 from cellctl.errors.records import StoreUnavailable
+from cellctl.terminal.consoles import print_warning
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")
 _INTERRUPTED = 130
@@ -238,7 +239,7 @@ def _show_run(report: StatusReport) -> None:
         try:
             show(report.last_run.number, Path(report.data_dir))
         except StoreUnavailable as error:
-            typer.echo(f"run {report.last_run.number} cannot be shown: {error}", err=True)
+            print_warning(f"run {report.last_run.number} cannot be shown: {error}")
 
 
 def _judge_result(report: StatusReport, *, dry_run: bool) -> None:

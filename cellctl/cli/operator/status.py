@@ -6,12 +6,12 @@ from typing import Annotated
 import typer
 from rich.live import Live
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.nearest_cell import SocketOption
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.operator.status_screen import last_seen, screen
 from cellctl.clock import utc_now
 from cellctl.errors.local import DaemonNotReached, DaemonSlow
+from cellctl.terminal.consoles import console_of_tables
 
 _PERIOD_S = 1.0
 

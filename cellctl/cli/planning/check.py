@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING
 import typer
 from rich.console import Console
 
-from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.move_findings import MoveFindings
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
+from cellctl.terminal.consoles import console_of_lines
 
 if TYPE_CHECKING:
     from cellctl.planning.scene.cell_scene import CellScene

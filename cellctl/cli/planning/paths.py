@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 from cellctl.files.hand_written import read_hand_written
+from cellctl.terminal.consoles import console_of_lines
 
 Out = Annotated[
     Path | None, typer.Option("--out", help="Write the cell file with the ways here; else none.")

@@ -7,6 +7,7 @@ import typer
 
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 from cellctl.errors.config import HeadNotDescribed, PlaceUnreachable
+from cellctl.terminal.consoles import print_warning
 
 Picture = Annotated[Path, typer.Option("--picture", help="PNG with three views.")]
 Glb = Annotated[Path | None, typer.Option("--glb", help="Also a GLB file for a 3-D viewer.")]
@@ -32,11 +33,11 @@ def show(
     try:
         views = tuple(frusta(scene))
     except HeadNotDescribed as fault:
-        typer.echo(f"what the heads see is not drawn: {fault}")
+        print_warning(f"what the heads see is not drawn: {fault}")
     try:
         paths = tuple(flange_paths(scene))
     except PlaceUnreachable as fault:
-        typer.echo(f"the ways of the flanges are not drawn: {fault}")
+        print_warning(f"the ways of the flanges are not drawn: {fault}")
     write_file(picture, three_views(scene, views, paths))
     typer.echo(f"written: {picture}")
     if glb is not None:

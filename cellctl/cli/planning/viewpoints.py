@@ -5,10 +5,10 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.planning.opening import CellFile, ModelFile, open_scene
 from cellctl.errors.config import NoViewsStated
 from cellctl.files.hand_written import read_hand_written
+from cellctl.terminal.consoles import console_of_lines
 
 Out = Annotated[
     Path | None, typer.Option("--out", help="Write the cell file with the poses here; else none.")

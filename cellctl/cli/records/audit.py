@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.records.entries import AuditEntry
+from cellctl.terminal.consoles import console_of_tables
 
 
 def audit(

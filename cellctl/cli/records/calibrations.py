@@ -9,7 +9,6 @@ import typer
 from rich.table import Column, Table
 
 from cellctl.calibration.checks import RELATIONS
-from cellctl.cli.consoles import console_of_lines, console_of_tables, print_hanging
 from cellctl.cli.operator.no_end import without_end
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
@@ -17,6 +16,7 @@ from cellctl.clock import utc_now
 from cellctl.records.entries import AuditEntry, Calibration
 from cellctl.records.procedure_entries import rejected, rejected_kinds
 from cellctl.spelling import nearest
+from cellctl.terminal.consoles import console_of_lines, console_of_tables, print_hanging
 
 app = typer.Typer(help="Look into the calibrations of the run store.", no_args_is_help=True)
 

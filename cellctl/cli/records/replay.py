@@ -7,7 +7,6 @@ from typing import Annotated, Any
 import typer
 from rich.table import Table
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.cli.records.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
@@ -18,6 +17,7 @@ from cellctl.records.replay.recorded_run import RecordedRun
 from cellctl.records.replay.replayed import Replayed
 from cellctl.runtime.procedure import ProcedureReplay
 from cellctl.runtime.process import Process
+from cellctl.terminal.consoles import console_of_tables
 
 
 def replay(

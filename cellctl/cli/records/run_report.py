@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.consoles import console_of_lines
 from cellctl.cli.records.run_store import DataDir, opened_store
+from cellctl.terminal.consoles import console_of_lines
 
 
 def report(

@@ -9,7 +9,6 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.records.entered.gauges import (
     for_programs,
@@ -27,6 +26,7 @@ from cellctl.records.report.acceptance.runs_before import RunBefore, words_of_ru
 from cellctl.records.report.acceptance.table import limit_text
 from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
+from cellctl.terminal.consoles import console_of_tables
 
 _WIDE = 100
 """Columns from which on the list has the name of the process."""

@@ -5,7 +5,6 @@ from typing import Annotated
 
 import typer
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_mcap import Images, write_mcap
@@ -30,6 +29,7 @@ from cellctl.cli.records.trend import trend
 from cellctl.records.entered.said_by import BY, ENTERED, GAUGE, gauge_entries
 from cellctl.records.report.acceptance.runs_before import runs_before
 from cellctl.records.run_list import listed_runs
+from cellctl.terminal.consoles import console_of_tables
 
 app = typer.Typer(help="Look into the run store.", no_args_is_help=True)
 

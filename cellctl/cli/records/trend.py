@@ -7,7 +7,6 @@ from typing import Annotated
 import typer
 from rich.table import Table
 
-from cellctl.cli.consoles import console_of_tables
 from cellctl.cli.records.plain_json import as_plain
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.records.entries import Verdict
@@ -15,6 +14,7 @@ from cellctl.records.figures import Limit
 from cellctl.records.trend import CONFIDENCE, Index, Sample, Trend
 from cellctl.records.trend import trend as trend_of
 from cellctl.spelling import nearest
+from cellctl.terminal.consoles import console_of_tables
 
 _WIDTH = 41
 

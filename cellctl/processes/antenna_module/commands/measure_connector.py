@@ -37,6 +37,7 @@ from cellctl.processes.antenna_module.vision.pixels import (
 )
 from cellctl.processes.antenna_module.vision.plane import read_plane
 from cellctl.processes.antenna_module.vision.result_file import result_to_json
+from cellctl.terminal.consoles import print_refusal, print_warning
 from cellctl.vision.camera.single_camera import read_single_camera
 
 _PANEL = "From files, without a cell"
@@ -88,10 +89,10 @@ def measure(  # noqa: PLR0917 - the options of the command
         MarksMissing,
         PaperMethodRefused,
     ) as fault:
-        typer.echo(f"{fault}\n  {fault.remedy}", err=True)
+        print_refusal(fault)
         raise typer.Exit(EXIT_NOT_SOUND) from fault
     except (VisionError, FileInvalid) as fault:
-        typer.echo(f"{fault}\n  {fault.remedy}", err=True)
+        print_refusal(fault)
         raise typer.Exit(EXIT_REFUSED) from fault
 
 
@@ -115,7 +116,7 @@ def _write(
     data = result_to_json(result)
     data["warnings"] += list(warnings)
     for words in data["warnings"]:
-        typer.echo(f"warning: {words}", err=True)
+        print_warning(words)
     text = json.dumps(data, indent=2) + "\n"
     if picture is not None:
         write_file(picture, picture_of(seen.plane, result))

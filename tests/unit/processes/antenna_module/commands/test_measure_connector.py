@@ -64,6 +64,17 @@ def test_a_good_plug_is_measured(tmp_path: Path, method: str, limit_mm: float) -
     assert drawn.shape[0] > 200
 
 
+def test_a_refusal_is_as_wide_as_the_terminal(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    picture(missing=("6",)).write(tmp_path)
+    done = run(tmp_path)
+    assert "F472 A contact is missing: 6 missing" in done.stderr
+    assert max(len(line) for line in done.stderr.splitlines()) <= 80
+
+
 def test_a_missing_contact_is_named_and_the_result_written(tmp_path: Path) -> None:
     seen = picture(missing=("6",))
     seen.write(tmp_path)

@@ -9,6 +9,8 @@ import re
 from rich.cells import cell_len
 from rich.console import Console
 
+from cellctl.errors import CellError
+
 _LEAST_TEXT = 30
 """A column of text that is narrower is harder to read than one that begins farther to the left."""
 _PIECES = re.compile(r"\s*[（《]*(?:[\u2e80-\uffff][，。；：、）》]*|[^\s\u2e80-\uffff]+)")
@@ -33,6 +35,18 @@ def print_hanging(console: Console, text: str, indent: int, style: str | None = 
     if console.is_terminal:
         text = hanging(text, console.width, indent)
     console.print(text, style=style)
+
+
+def print_refusal(fault: CellError) -> None:
+    """A fault with which a command ends by an exit code of its own, on standard error."""
+    console = console_of_lines(stderr=True)
+    print_hanging(console, str(fault), 5)
+    print_hanging(console, f"  {fault.remedy}", 2)
+
+
+def print_warning(words: str) -> None:
+    """What a command has to say beside its result, on standard error."""
+    print_hanging(console_of_lines(stderr=True), f"warning: {words}", 9)
 
 
 def hanging(text: str, width: int, indent: int) -> str:

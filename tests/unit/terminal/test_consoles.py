@@ -9,11 +9,12 @@ from rich.cells import cell_len
 from rich.console import Console
 from rich.table import Table
 
-import cellctl.cli
+import cellctl
 import drivers
-from cellctl.cli import consoles
+from cellctl.errors.vision import ImageFileInvalid
+from cellctl.terminal import consoles
 
-FOLDERS = (Path(cellctl.cli.__file__).parent, Path(drivers.__file__ or "").parent)
+FOLDERS = (Path(cellctl.__file__).parent, Path(drivers.__file__ or "").parent)
 SAID = "SAT [x] :100: [/]"
 
 
@@ -59,3 +60,30 @@ def test_only_a_terminal_breaks_lines() -> None:
         console = Console(file=file, force_terminal=terminal, width=40, soft_wrap=True)
         consoles.print_hanging(console, "word " * 20, 4)
         assert file.getvalue().count("\n") == (3 if terminal else 1)
+
+
+def test_a_refusal_and_a_warning_are_as_wide_as_the_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = " ".join(["nothing in this picture is what the drawing has"] * 5)
+    consoles.print_warning(words)
+    assert capsys.readouterr().err == f"warning: {words}\n", "one line for a program"
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    monkeypatch.setenv("COLUMNS", "80")
+    consoles.print_refusal(ImageFileInvalid(words))
+    consoles.print_warning(words)
+    lines = capsys.readouterr().err.splitlines()
+    assert max(len(line) for line in lines) <= 80
+    assert len(lines) > 8
+    assert [line for line in lines if line.startswith("     ")]
+
+
+def test_no_command_prints_a_fault_past_the_width_of_the_terminal() -> None:
+    written = [
+        f"{path}: {line.strip()}"
+        for folder in (FOLDERS[0] / "cli", FOLDERS[0] / "processes")
+        for path in sorted(folder.rglob("*.py"))
+        for line in path.read_text().splitlines()
+        if re.search(r"\becho\(.*\{(fault|error)\b|\becho\(str\((fault|error)\)", line)
+    ]
+    assert written == []

@@ -1,0 +1,1 @@
+"""Text as commands print it, whoever brings the command: the core, a process or a driver."""
