@@ -14,7 +14,7 @@ from benchmarks.power_cut.disk import Disk
 from benchmarks.power_cut.writes import KINDS, Write
 from cellctl.errors.base import CellError
 from cellctl.errors.calibration import CalibrationNotStored
-from cellctl.errors.records import RecordNotWritten, StoreUnavailable
+from cellctl.errors.records.store import RecordNotWritten, StoreUnavailable
 
 _MOST_WRITES = 12
 """The cut comes after so many acknowledged writes at most, and then in the middle of one."""

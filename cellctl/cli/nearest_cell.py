@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 
 SERVICE_SOCKET = Path("/run/cellctl/cellctl.sock")
 SERVICE_STORE = Path("/var/lib/cellctl")

@@ -9,7 +9,7 @@ from cellctl.command.refusal_notes import RefusalNotes
 from cellctl.command.submission import Submission
 from cellctl.command.tracker import CommandTracker
 from cellctl.command.validator import CommandValidator, start_mode
-from cellctl.errors.records import DiskSilent, RecordsError
+from cellctl.errors.records.store import DiskSilent, RecordsError
 from cellctl.packml.command import COMMAND_NAMES, Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode

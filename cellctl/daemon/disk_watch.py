@@ -3,7 +3,7 @@
 import asyncio
 
 from cellctl.errors import CellError
-from cellctl.errors.records import DiskNearlyFull, RecordSilent
+from cellctl.errors.records.store import DiskNearlyFull, RecordSilent
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.files.disk_space import require_writable
 from cellctl.records.store import RunStore

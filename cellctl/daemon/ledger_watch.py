@@ -1,7 +1,7 @@
 """Watches that the ledger still has what it had: only a running daemon remembers that."""
 
 from cellctl import log
-from cellctl.errors.records import RecordAltered, RecordsError
+from cellctl.errors.records.store import RecordAltered, RecordsError
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.seals import LedgerHead
 from cellctl.records.store import RunStore

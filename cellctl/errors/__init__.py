@@ -16,8 +16,8 @@ CellError
 ├── CalibrationError  6xx   errors.calibration  calibration and its gate
 ├── LineError         7xx   errors.line         line PLC and commands
 │   └── LocalError    71x   errors.local        operator commands on the cell's PC, 74x
-├── RecordsError      8xx   errors.records      run store and artefacts
-│   └── FleetError     83x  errors.records       records of many cells in one database
+├── RecordsError      8xx   errors.records.store  run store and artefacts
+│   └── FleetError     83x  errors.records.fleet  records of many cells in one database
 └── InternalError     9xx   errors.internal     cellctl itself
 """
 

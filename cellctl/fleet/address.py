@@ -6,7 +6,7 @@ from pathlib import Path
 from sqlalchemy import URL, make_url
 
 from cellctl.config.cell import checked_url
-from cellctl.errors.records import FleetNotNamed
+from cellctl.errors.records.fleet import FleetNotNamed
 
 PASSWORD = "CELLCTL_FLEET_PASSWORD"  # the name of a variable
 """Variable of the environment; without it and without a file libpq looks where it always does."""

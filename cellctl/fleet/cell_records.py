@@ -16,7 +16,8 @@ from sqlalchemy import Connection, Engine, Table, create_engine, func, select, t
 from sqlalchemy.exc import SQLAlchemyError
 from sqlalchemy.pool import NullPool
 
-from cellctl.errors.records import FleetDiffers, StoreTooNew, StoreUnavailable
+from cellctl.errors.records.fleet import FleetDiffers
+from cellctl.errors.records.store import StoreTooNew, StoreUnavailable
 from cellctl.fleet.tables import table_of
 from cellctl.records.database.schema import LedgerRow, RunRow
 from cellctl.records.database.schema_1.tables import (

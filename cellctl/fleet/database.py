@@ -8,7 +8,7 @@ from sqlalchemy import URL, Connection, Engine, create_engine, event, text
 from sqlalchemy.exc import DBAPIError, NoSuchModuleError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from cellctl.errors.records import (
+from cellctl.errors.records.fleet import (
     FleetDiffers,
     FleetError,
     FleetNotInstalled,

@@ -12,7 +12,7 @@ from sqlalchemy import Connection, Table, func, select, text, update
 from sqlalchemy.dialects.postgresql import insert
 
 from cellctl.clock import utc_now
-from cellctl.errors.records import FleetOutdated, FleetRefused
+from cellctl.errors.records.fleet import FleetOutdated, FleetRefused
 from cellctl.fleet.cell_records import START, Batch, CellRecords, FilledColumns, NewestValue, NewRow
 from cellctl.fleet.database import FleetDatabase
 from cellctl.fleet.tables import CellRow, DeliveryRow, table_of

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from cellctl import log
 from cellctl.clock import utc_now
 from cellctl.errors.base import CellError
-from cellctl.errors.records import FleetUnreachable, RecordsError, StoreTooNew
+from cellctl.errors.records.fleet import FleetUnreachable
+from cellctl.errors.records.store import RecordsError, StoreTooNew
 from cellctl.fleet.delivery import Delivery
 from cellctl.records.files.delivery_file import DeliveryState
 

@@ -12,7 +12,7 @@ from sqlalchemy import Column, Connection, MetaData, Table, inspect, select, tex
 from sqlalchemy.dialects import postgresql
 from sqlalchemy.schema import CreateSchema
 
-from cellctl.errors.records import FleetDiffers, FleetRefused
+from cellctl.errors.records.fleet import FleetDiffers, FleetRefused
 from cellctl.fleet.database import FleetDatabase, enter
 from cellctl.fleet.tables import FLEET, CellRow, FleetBase, PlaceBase, table_of
 from cellctl.records.database.schema import Base

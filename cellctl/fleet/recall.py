@@ -8,7 +8,7 @@ from sqlalchemy import bindparam, func, select, text
 from sqlalchemy.orm import Session
 from sqlalchemy.types import NullType
 
-from cellctl.errors.records import FleetRefused
+from cellctl.errors.records.fleet import FleetRefused
 from cellctl.fleet.database import FleetDatabase
 from cellctl.fleet.tables import CellRow, DeliveryRow
 from cellctl.records.database import reading

@@ -8,7 +8,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any, TypeVar
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records.entered.gauges import PART_VERDICT, judge_gauge, part_verdict
 from cellctl.records.entries import Artefact, RunHead
 from cellctl.records.figures import on_pages, verdicts

@@ -9,7 +9,7 @@ from fastapi.responses import JSONResponse
 from starlette.exceptions import HTTPException
 
 from cellctl.errors import CellError
-from cellctl.errors.records import ArtefactDamaged, RunUnknown
+from cellctl.errors.records.store import ArtefactDamaged, RunUnknown
 from cellctl.hmi.words.languages import headers_of, language_of
 from cellctl.hmi.words.page_words import refusal
 from cellctl.translations import fault_words, spoken

@@ -18,7 +18,7 @@ from cellctl.calibration.boards.board_record import board_from_record
 from cellctl.calibration.solvers.base_frame.base_frame import ArmGeometry, calibrate_base_frame
 from cellctl.calibration.solvers.stereo.stereo import calibrate_stereo
 from cellctl.config.devices import LoadConfig
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.force.gravity.payload_result import payload_document
 from cellctl.force.gravity.pose_file import PoseRecord
 from cellctl.force.gravity.poses import PoseRole

@@ -8,7 +8,7 @@ from typing import Concatenate, ParamSpec, TypeVar
 
 from cellctl import log
 from cellctl.clock import now_s
-from cellctl.errors.records import RecordNotWritten, RecordsError, StoreLocked
+from cellctl.errors.records.store import RecordNotWritten, RecordsError, StoreLocked
 from cellctl.records.database.sessions import LOCK_WAIT_S
 from cellctl.records.files.disk_space import require_space
 from cellctl.records.files.raw_images import (

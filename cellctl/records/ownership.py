@@ -6,7 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
-from cellctl.errors.records import StoreHeldByEarlierVersion, StoreInUse
+from cellctl.errors.records.store import StoreHeldByEarlierVersion, StoreInUse
 
 
 class Ownership:

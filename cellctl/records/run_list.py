@@ -13,7 +13,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records.database.missing_store import missing_store
 from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION

@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
-from cellctl.errors.records import RecordAltered
+from cellctl.errors.records.store import RecordAltered
 from cellctl.records.database import reading, rows, schema
 from cellctl.records.database.claimed_version import foreign_parts
 from cellctl.records.database.schema_version import FILE, SCHEMA_VERSION

@@ -10,7 +10,7 @@ from cellctl import log
 from cellctl.cell.devices import Cell
 from cellctl.clock import now_s
 from cellctl.errors import CellError
-from cellctl.errors.records import RunInterrupted
+from cellctl.errors.records.store import RunInterrupted
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore

@@ -19,7 +19,7 @@ from cellctl.config.process_definition import ProcessDefinition, process_definit
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.config import UnknownDriver
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.records.entries import Calibration, RunRecord
 from cellctl.records.replay.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact

@@ -12,7 +12,7 @@ from cellctl.config.service_limits import (
     forwarder_limits,
     service_limits,
 )
-from cellctl.errors.records import FleetNotNamed
+from cellctl.errors.records.fleet import FleetNotNamed
 
 
 def limits(

@@ -11,7 +11,7 @@ import typer
 from cellctl import log
 from cellctl.cli.fleet.store_option import opened_fleet
 from cellctl.config.load import load_cell
-from cellctl.errors.records import FleetNotNamed
+from cellctl.errors.records.fleet import FleetNotNamed
 from cellctl.version import software
 
 if TYPE_CHECKING:

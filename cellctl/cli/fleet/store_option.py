@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from cellctl.errors.records import FleetNotNamed
+from cellctl.errors.records.fleet import FleetNotNamed
 
 if TYPE_CHECKING:
     from cellctl.fleet.database import FleetDatabase

@@ -13,7 +13,7 @@ from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.cli.os_user import terminal_user
 from cellctl.config import CellConfig, load_cell
 from cellctl.errors.calibration import CalibrationMissing
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records.entered.said_by import BY
 from cellctl.records.store import RunStore
 from cellctl.runtime.process import calibration_kinds

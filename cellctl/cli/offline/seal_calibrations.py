@@ -10,7 +10,7 @@ from cellctl.calibration.store.old_form import seal_old_files
 from cellctl.cli.nearest_cell import SERVICE_CELL
 from cellctl.cli.os_user import terminal_user
 from cellctl.config import load_cell
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records.entered.said_by import BY
 from cellctl.records.store import RunStore
 from cellctl.terminal.consoles import print_warning

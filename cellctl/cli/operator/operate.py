@@ -25,7 +25,7 @@ from cellctl.errors.local import (
     DaemonSlow,
     StopNotDelivered,
 )
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.terminal.consoles import print_warning
 
 _BEGUN = ("EXECUTE", "COMPLETING", "COMPLETED")

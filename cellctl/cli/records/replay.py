@@ -10,7 +10,7 @@ from rich.table import Table
 from cellctl.cli.records.run_store import DataDir, opened_store
 from cellctl.cli.records.runs import Run
 from cellctl.config.process_definition import installed_processes, process_definition
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.records.entries import MAINTENANCE
 from cellctl.records.files.artefacts import CELL_FILE
 from cellctl.records.replay.recorded_run import RecordedRun

@@ -24,7 +24,7 @@ class Images(StrEnum):
 def write_mcap(store: "RunStore", run: int, out: Path | None, images: Images) -> None:
     """Write both files; what the run lacks is told on standard error."""
     # Loaded here: other commands do without the message formats of viewers.
-    from cellctl.errors.records import RecordNotWritten
+    from cellctl.errors.records.store import RecordNotWritten
     from cellctl.files.atomic_files import write_durably
     from cellctl.records.run_mcap.export import export_mcap
     from cellctl.records.run_mcap.images import ImageForm

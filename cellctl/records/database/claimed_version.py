@@ -12,7 +12,7 @@ from pathlib import Path
 
 from sqlalchemy import Connection, inspect, text
 
-from cellctl.errors.records import StoreContradictsVersion
+from cellctl.errors.records.store import StoreContradictsVersion
 from cellctl.records.database.sealing.sealed import GAUGE, KINDS, PROGRESS, RUN
 
 _CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {

@@ -17,7 +17,7 @@ from sqlalchemy.orm import Session
 from sqlalchemy.schema import CreateIndex, CreateTable, ExecutableDDLElement
 
 from cellctl.clock import utc_now
-from cellctl.errors.records import StoreTooNew
+from cellctl.errors.records.store import StoreTooNew
 from cellctl.files.atomic_files import sync_folder
 from cellctl.records.database.claimed_version import require_claimed
 from cellctl.records.database.schema import Base, DocumentRow, LedgerRow

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 
 _BELOW = "store"
 """The folder of the store below that of a demonstration."""

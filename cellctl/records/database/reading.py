@@ -7,7 +7,7 @@ from typing import Any, TypeVar
 from sqlalchemy import ColumnElement, func, literal_column, or_, select
 from sqlalchemy.orm import Session
 
-from cellctl.errors.records import ArtefactDamaged
+from cellctl.errors.records.store import ArtefactDamaged
 from cellctl.records.database import schema_1
 from cellctl.records.database.rows import existing_run, to_entry
 from cellctl.records.database.schema import (

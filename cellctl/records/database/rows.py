@@ -10,7 +10,7 @@ from sqlalchemy.orm import Session
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import utc_now
-from cellctl.errors.records import RunClosed, RunUnknown
+from cellctl.errors.records.store import RunClosed, RunUnknown
 from cellctl.records.database.schema import (
     AlarmRow,
     ArtefactRow,

@@ -15,7 +15,7 @@ from sqlalchemy import URL, Engine, create_engine, event
 from sqlalchemy.exc import DBAPIError, IntegrityError, SQLAlchemyError
 from sqlalchemy.orm import Session
 
-from cellctl.errors.records import (
+from cellctl.errors.records.store import (
     RecordNotWritten,
     RunUnknown,
     StoreLocked,

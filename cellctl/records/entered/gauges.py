@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from cellctl.errors.records import GaugeRefused, ValueRefused
+from cellctl.errors.records.store import GaugeRefused, ValueRefused
 from cellctl.records.entered.said_by import gauge_entries, measured_by
 from cellctl.records.entries import DRY_RUN, AuditEntry, Gauge, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from cellctl.errors.records import ValueRefused
+from cellctl.errors.records.store import ValueRefused
 from cellctl.records.entered.said_by import BY
 from cellctl.records.entries import AuditEntry, Verdict
 from cellctl.records.figures import Limit

@@ -3,7 +3,7 @@
 import hashlib
 from pathlib import Path
 
-from cellctl.errors.records import ArtefactDamaged, RecordNotWritten
+from cellctl.errors.records.store import ArtefactDamaged, RecordNotWritten
 from cellctl.files.atomic_files import write_durably
 
 CELL_FILE = "cell.json"

@@ -17,7 +17,7 @@ from typing import IO, Self
 import numpy as np
 from mcap.writer import CompressionType, Writer
 
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import MM, Array
 from cellctl.records.entries import Artefact

@@ -4,7 +4,7 @@ import os
 import shutil
 from pathlib import Path
 
-from cellctl.errors.records import DiskNearlyFull, RecordNotWritten, StoreUnavailable
+from cellctl.errors.records.store import DiskNearlyFull, RecordNotWritten, StoreUnavailable
 
 LEAST_FREE_BYTES = 2 * 1024**3
 """A run with its raw images takes some 0.15 GB. The rest is for the log and for the next hours, in

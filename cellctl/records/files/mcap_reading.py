@@ -12,7 +12,7 @@ from mcap.records import Channel, McapRecord, Message, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 
 MEDIA_TYPE = "application/x-mcap"
 _RECORD_LIMIT = 16 * 1024 * 1024

@@ -7,7 +7,7 @@ import numpy as np
 import zstandard
 from numpy.typing import NDArray
 
-from cellctl.errors.records import ArtefactDamaged
+from cellctl.errors.records.store import ArtefactDamaged
 from cellctl.records.files.artefacts import ArtefactFolder
 
 MEDIA_TYPE = "application/zstd"

@@ -10,7 +10,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.files.atomic_files import write_durably
 from cellctl.records.entries import RunResult
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from cellctl.calibration.checks import checks_from_record
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.records.entries import Figure
 from cellctl.records.figures import Limit, figure
 from cellctl.records.replay.recorded_run import RecordedRun

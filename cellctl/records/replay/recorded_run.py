@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.records.entries import Artefact, Calibration, RunRecord
 
 if TYPE_CHECKING:

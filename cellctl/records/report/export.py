@@ -9,7 +9,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from cellctl.errors.config import OutputNotWritten
-from cellctl.errors.records import ExportFolderTaken, ValueRefused
+from cellctl.errors.records.store import ExportFolderTaken, ValueRefused
 from cellctl.files.atomic_files import write_durably
 from cellctl.records.entered.gauges import for_programs
 from cellctl.records.entered.notes import notes_of

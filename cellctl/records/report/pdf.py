@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.resources import files
 
-from cellctl.errors.records import PdfNotMade
+from cellctl.errors.records.store import PdfNotMade
 
 
 class _Told(logging.Handler):

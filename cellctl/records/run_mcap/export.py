@@ -9,7 +9,7 @@ from typing import Any
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
 
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.records.entered.gauges import PART_VERDICT, part_verdict
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.acceptance.timeline import during

@@ -15,7 +15,7 @@ from foxglove_schemas_protobuf.PointsAnnotation_pb2 import PointsAnnotation
 from foxglove_schemas_protobuf.RawImage_pb2 import RawImage
 from foxglove_schemas_protobuf.TextAnnotation_pb2 import TextAnnotation
 
-from cellctl.errors.records import ArtefactDamaged
+from cellctl.errors.records.store import ArtefactDamaged
 from cellctl.records.entries import Artefact, RunRecord
 from cellctl.records.files.raw_images import MEDIA_TYPE, decode
 from cellctl.records.looks import MeasuredRim, TakenImage, rims_of, taken_images

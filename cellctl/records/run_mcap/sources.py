@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
-from cellctl.errors.records import ArtefactDamaged, RecordingUnreadable
+from cellctl.errors.records.store import ArtefactDamaged, RecordingUnreadable
 from cellctl.records.entries import Artefact, AuditEntry, Calibration, RunRecord
 from cellctl.records.files.artefacts import ArtefactFolder
 from cellctl.records.files.mcap_reading import RawContent, read_raw

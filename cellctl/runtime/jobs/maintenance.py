@@ -6,7 +6,7 @@ from cellctl import log
 from cellctl.calibration.checks import Checks, checks_from_record
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationNotStored, MeasuredBeyondBound, ResultOutOfLimits
-from cellctl.errors.records import RecordsError
+from cellctl.errors.records.store import RecordsError
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import RunResult
 from cellctl.records.procedure_entries import (

@@ -10,7 +10,7 @@ from cellctl.cell.robot_layers.noted_robot import RobotNote, RobotNotes
 from cellctl.cell.run_notes import RunNote, RunNotes
 from cellctl.clock import now_s, utc_now
 from cellctl.errors import CellError
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.geometry.pose import Array
 from cellctl.interfaces import Robot, RobotState
 from cellctl.records.files.motion_file import MotionWriter

@@ -6,7 +6,7 @@ from cellctl import log
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
 from cellctl.errors.calibration import CalibrationRecordInvalid
-from cellctl.errors.records import FigureBeyondLimit
+from cellctl.errors.records.store import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import DRY_RUN, PRODUCTION, RunResult
 from cellctl.records.run_recorder import RunRecorder

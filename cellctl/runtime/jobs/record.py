@@ -11,7 +11,7 @@ from cellctl.cell.devices import Cell
 from cellctl.clock import utc_now
 from cellctl.config.recipe import Recipe
 from cellctl.errors import CellError
-from cellctl.errors.records import RecordNotWritten, RecordsError, RecordSilent, StoreLocked
+from cellctl.errors.records.store import RecordNotWritten, RecordsError, RecordSilent, StoreLocked
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import MAINTENANCE, Document, RunResult

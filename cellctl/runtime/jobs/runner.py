@@ -10,7 +10,7 @@ from cellctl.cell.time_limits import TimeLimits
 from cellctl.config.recipe import LineLostAction
 from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
-from cellctl.errors.records import RecordSilent
+from cellctl.errors.records.store import RecordSilent
 from cellctl.packml.result import Result
 from cellctl.records.entries import RunHead, RunResult
 from cellctl.runtime.jobs.job import Job

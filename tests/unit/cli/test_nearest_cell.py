@@ -12,7 +12,7 @@ from cellctl.cli.nearest_cell import nearest_socket, nearest_store
 from cellctl.cli.operator.daemon_client import DaemonClient
 from cellctl.cli.records.runs import app
 from cellctl.errors.local import DaemonNotReached
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records import RunStore
 from tests.unit.records.sample import good_run
 

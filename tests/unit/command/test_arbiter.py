@@ -10,7 +10,7 @@ import pytest
 
 from cellctl.errors.force import SensorSilent
 from cellctl.errors.link import LinkLost
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.packml.command import Command
 from cellctl.packml.mode import Mode
 from cellctl.packml.reject import RejectCode

@@ -8,7 +8,7 @@ import pytest
 
 from cellctl.daemon import disk_watch
 from cellctl.daemon.disk_watch import DiskWatch
-from cellctl.errors.records import DiskNearlyFull, RecordNotWritten, RecordSilent
+from cellctl.errors.records.store import DiskNearlyFull, RecordNotWritten, RecordSilent
 from cellctl.packml.state import State
 from cellctl.records.files import disk_space
 from cellctl.records.store import RunStore

@@ -10,14 +10,13 @@ from pathlib import Path
 import pytest
 
 from cellctl.clock import utc_now
-from cellctl.errors.records import (
+from cellctl.errors.records.fleet import (
     FleetDiffers,
     FleetOutdated,
     FleetRefused,
     RecordUndeliverable,
-    StoreTooNew,
-    StoreUnavailable,
 )
+from cellctl.errors.records.store import StoreTooNew, StoreUnavailable
 from cellctl.fleet import recall
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.schema_version import SCHEMA_VERSION

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from sqlalchemy.exc import DBAPIError
 
-from cellctl.errors.records import FleetUnreachable
+from cellctl.errors.records.fleet import FleetUnreachable
 from cellctl.fleet.address import PASSWORD as PASSWORD_VARIABLE
 from cellctl.fleet.forwarder import Forwarder, ForwarderPace
 from cellctl.records import RunStore

@@ -4,7 +4,7 @@ import pytest
 from sqlalchemy import text
 from sqlalchemy.exc import DBAPIError
 
-from cellctl.errors.records import FleetDiffers, FleetRefused
+from cellctl.errors.records.fleet import FleetDiffers, FleetRefused
 from cellctl.fleet import layout, recall
 from cellctl.fleet.address import PASSWORD as PASSWORD_VARIABLE
 from cellctl.fleet.address import address

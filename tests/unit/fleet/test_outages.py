@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 from sqlalchemy import text
 
-from cellctl.errors.records import FleetUnreachable
+from cellctl.errors.records.fleet import FleetUnreachable
 from cellctl.fleet import delivery as delivery_module
 from cellctl.fleet.address import PASSWORD as PASSWORD_VARIABLE
 from cellctl.fleet.address import address

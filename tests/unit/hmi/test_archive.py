@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.hmi.archive import READERS, ArchiveReader
 from cellctl.records import RunStore
 from cellctl.records.figures import KNOWN_TO, Limit, figure

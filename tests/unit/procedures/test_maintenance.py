@@ -12,7 +12,7 @@ from cellctl.errors.calibration import (
     MeasuredBeyondBound,
     ResultOutOfLimits,
 )
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.processes.deck_to_frame.calibrations import CALIBRATIONS, STEREO_HEAD_1, STOP_LATENCY
 from cellctl.records.entries import RunResult, Verdict
 from cellctl.records.procedure_entries import CALIBRATION_REJECTED

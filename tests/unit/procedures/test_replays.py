@@ -19,7 +19,7 @@ from cellctl.calibration.checks import LimitCheck, evidence_to_record
 from cellctl.cli.commands import whole_app
 from cellctl.clock import now_s
 from cellctl.errors import CellError
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.geometry.pose import Array, pose_from_xyzabc
 from cellctl.guard.report import GuardSample, GuardSamples
 from cellctl.interfaces import StereoPair

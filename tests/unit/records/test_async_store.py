@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.records import RecordNotWritten, StoreUnavailable, ValueRefused
+from cellctl.errors.records.store import RecordNotWritten, StoreUnavailable, ValueRefused
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.store import RunStore
 

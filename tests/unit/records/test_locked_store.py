@@ -10,7 +10,7 @@ from shutil import copytree
 import pytest
 from structlog.testing import capture_logs
 
-from cellctl.errors.records import StoreLocked
+from cellctl.errors.records.store import StoreLocked
 from cellctl.records import RunResult, RunStore
 from cellctl.records.async_store import AsyncRunStore
 from tests.unit.records.conftest import start

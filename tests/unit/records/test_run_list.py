@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import StoreTooNew, StoreUnavailable
+from cellctl.errors.records.store import StoreTooNew, StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.schema_version import FILE
 from cellctl.records.entered.gauges import GAUGE_HOLES, part_verdict

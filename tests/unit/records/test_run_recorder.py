@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.records import RunClosed
+from cellctl.errors.records.store import RunClosed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.exposure import ExposureRecord

@@ -15,7 +15,7 @@ from typing import cast
 import pytest
 
 from cellctl.calibration.store.envelope import StoredCalibration
-from cellctl.errors.records import (
+from cellctl.errors.records.store import (
     ArtefactDamaged,
     RecordNotWritten,
     RunClosed,

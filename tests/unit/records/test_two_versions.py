@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import StoreHeldByEarlierVersion, StoreInUse, StoreTooNew
+from cellctl.errors.records.store import StoreHeldByEarlierVersion, StoreInUse, StoreTooNew
 from cellctl.records import RunStore
 from cellctl.records.database.schema_version import SCHEMA_VERSION
 from cellctl.records.run_list import listed_runs

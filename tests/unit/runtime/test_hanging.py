@@ -11,7 +11,7 @@ import pytest
 from cellctl.cell.time_limits import TimeLimits
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.errors.link import DeviceAway
-from cellctl.errors.records import DiskNearlyFull, RecordSilent
+from cellctl.errors.records.store import DiskNearlyFull, RecordSilent
 from cellctl.errors.robot import StopFailed
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode

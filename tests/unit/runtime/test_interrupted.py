@@ -9,7 +9,7 @@ import pytest
 
 from cellctl.errors.force import LiftOffHeld
 from cellctl.errors.link import StaleData
-from cellctl.errors.records import RecordNotWritten, RunInterrupted
+from cellctl.errors.records.store import RecordNotWritten, RunInterrupted
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.calibration.store.snapshot import CalibrationSnapshot
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.errors.vision import OF_AN_IMAGE, HoleAmbiguous, HoleMissing, VisionError
 from cellctl.force.contact.curve import curve_statistics
 from cellctl.geometry.pose import MM, pose_from_xyzabc, pose_to_xyzabc

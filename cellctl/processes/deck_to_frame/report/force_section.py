@@ -5,7 +5,7 @@ from pathlib import PurePosixPath
 
 import numpy as np
 
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.force.contact.curve import FINAL_S, ForceCurve, curve_statistics
 from cellctl.processes.deck_to_frame.record.keys import LIMIT_FORCE, TARGET_FORCE
 from cellctl.processes.deck_to_frame.report.force_plot import force_by_time, force_by_travel

@@ -33,7 +33,7 @@ from cellctl.cli.operator.daemon_client import ANSWER_S
 from cellctl.clock import now_s
 from cellctl.errors.link import DeviceAway, LinkLost, StaleData
 from cellctl.errors.local import MessageMalformed
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.packml.command import Command
 from cellctl.packml.reject import RejectCode

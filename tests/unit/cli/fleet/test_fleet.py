@@ -12,7 +12,7 @@ from typer.testing import CliRunner, Result
 
 from cellctl.cli.app import main
 from cellctl.cli.fleet.app import app
-from cellctl.errors.records import FleetNotNamed, FleetRefused
+from cellctl.errors.records.fleet import FleetNotNamed, FleetRefused
 from cellctl.fleet import layout
 from cellctl.fleet.address import PASSWORD as PASSWORD_VARIABLE
 from cellctl.records import RunResult

@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from cellctl.cli.commands import whole_app
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.processes.deck_to_frame.process import DeckToFrame
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import MAINTENANCE

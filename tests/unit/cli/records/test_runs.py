@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
-from cellctl.errors.records import RunUnknown, StoreUnavailable
+from cellctl.errors.records.store import RunUnknown, StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entered.said_by import gauge_entries, measured_by

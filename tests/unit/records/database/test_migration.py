@@ -15,7 +15,7 @@ from sqlalchemy import create_engine
 from typer.testing import CliRunner
 
 from cellctl.cli.records.runs import app
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database import migration
 from cellctl.records.database.schema import Base

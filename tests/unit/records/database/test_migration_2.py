@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import StoreContradictsVersion
+from cellctl.errors.records.store import StoreContradictsVersion
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.migration import backup_of
 from cellctl.records.database.schema import COMMAND_KEY

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.records.run_list import listed_runs
 from cellctl.records.store import RunStore
 

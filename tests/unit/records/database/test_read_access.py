@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import RecordsError, StoreUnavailable
+from cellctl.errors.records.store import RecordsError, StoreUnavailable
 from cellctl.records import RunStore
 from cellctl.records.database.read_access import ReadAccess
 from cellctl.records.database.schema_version import FILE

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from cellctl.cli.os_user import terminal_user
 from cellctl.cli.records.runs import app
-from cellctl.errors.records import GaugeRefused
+from cellctl.errors.records.store import GaugeRefused
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entered.gauges import GAUGE_HOLES, part_verdict
 from cellctl.records.entries import DRY_RUN, Document

@@ -2,7 +2,7 @@
 
 import pytest
 
-from cellctl.errors.records import RunUnknown, ValueRefused
+from cellctl.errors.records.store import RunUnknown, ValueRefused
 from cellctl.records import RunStore
 from cellctl.records.entered.notes import add_note, note_words, notes_of, surroundings
 from cellctl.records.entered.said_by import said_by

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.records.files.curve_file import CurveWriter, encode_curve, read_recording
 

@@ -10,7 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from mcap.writer import CompressionType, Writer
 
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.records.files.curve_file import read_recording
 from cellctl.records.files.mcap_reading import read_mcap, read_raw
 

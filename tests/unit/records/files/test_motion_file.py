@@ -8,7 +8,7 @@ import pytest
 from mcap.reader import make_reader
 from scipy.spatial.transform import RigidTransform
 
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.interfaces import RobotMode, RobotState
 from cellctl.records.files.mcap_reading import RecordedMessage, read_mcap
 from cellctl.records.files.motion_file import MotionWriter

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.records import ArtefactDamaged
+from cellctl.errors.records.store import ArtefactDamaged
 from cellctl.records import RunResult, RunStore
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.files.raw_images import MEDIA_TYPE, coding_thread, decode

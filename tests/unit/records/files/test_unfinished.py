@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.records.entries import RunResult
 from cellctl.records.files import motion_file
 from cellctl.records.files.mcap_reading import read_mcap

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.records.entries import RunResult
 from cellctl.records.files.unwritten_end import UnwrittenEnd, UnwrittenEnds
 from cellctl.records.store import RunStore

@@ -7,11 +7,7 @@ from pathlib import Path
 import pytest
 
 from cellctl.errors.config import OutputNotWritten
-from cellctl.errors.records import (
-    ArtefactDamaged,
-    ExportFolderTaken,
-    ValueRefused,
-)
+from cellctl.errors.records.store import ArtefactDamaged, ExportFolderTaken, ValueRefused
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import RunRecord
 from cellctl.records.figures import Limit, figure

@@ -17,7 +17,7 @@ from pypdf import PdfReader
 from typer.testing import CliRunner
 
 from cellctl.cli.records.runs import app
-from cellctl.errors.records import PdfNotMade
+from cellctl.errors.records.store import PdfNotMade
 from cellctl.processes.deck_to_frame.report.pages import pages
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entered.gauges import GAUGE_HOLES

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.records import RecordNotWritten, RunUnknown
+from cellctl.errors.records.store import RecordNotWritten, RunUnknown
 from cellctl.records import RunStore
 from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entries import Document, RunRecord, RunResult

@@ -11,7 +11,7 @@ import pytest
 
 from cellctl.cell.robot_layers.noted_robot import NotedRobot
 from cellctl.errors.link import LinkLost
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.packml.state import State
 from cellctl.records.files.mcap_reading import McapContent, read_mcap
 from cellctl.records.files.unfinished import MOTION

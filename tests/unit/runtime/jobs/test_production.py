@@ -11,7 +11,7 @@ from cellctl.errors.calibration import CalibrationNotStored
 from cellctl.errors.force import GuardDied
 from cellctl.errors.line import LineLostInContact
 from cellctl.errors.link import LinkLost
-from cellctl.errors.records import RecordNotWritten, RunInterrupted
+from cellctl.errors.records.store import RecordNotWritten, RunInterrupted
 from cellctl.errors.robot import StopFailed
 from cellctl.geometry.pose import pose_from_xyzabc
 from cellctl.packml.command import Command

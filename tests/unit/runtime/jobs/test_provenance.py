@@ -9,7 +9,7 @@ import pytest
 
 from cellctl.config import CellConfig
 from cellctl.config.load import cell_from_document
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.errors.vision import FeatureFileInvalid
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord, RunResult

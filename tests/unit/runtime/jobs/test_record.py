@@ -6,7 +6,7 @@ from typing import Never
 
 import pytest
 
-from cellctl.errors.records import StoreUnavailable
+from cellctl.errors.records.store import StoreUnavailable
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.records.store import RunStore

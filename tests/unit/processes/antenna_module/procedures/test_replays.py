@@ -17,7 +17,7 @@ from cellctl.calibration.solvers.hand_eye.hand_eye_result import Setup
 from cellctl.calibration.solvers.single_camera.single_camera_result import SingleCameraResult
 from cellctl.calibration.store.envelope import read_calibration
 from cellctl.clock import now_s
-from cellctl.errors.records import NotReplayable
+from cellctl.errors.records.store import NotReplayable
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.camera import CameraImage, PixelFormat
 from cellctl.interfaces.stereo_camera import Image

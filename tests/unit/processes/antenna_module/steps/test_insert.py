@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from cellctl.clock import now_s
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.antenna_module.faults.plugging import PlugShortSeat, StaleLook
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve

@@ -7,7 +7,7 @@ from collections.abc import Awaitable, Callable
 import numpy as np
 import pytest
 
-from cellctl.errors.records import RecordNotWritten
+from cellctl.errors.records.store import RecordNotWritten
 from cellctl.errors.robot import HeadMoved
 from cellctl.force.contact.curve import ForceCurve
 from cellctl.geometry.pose import pose_from_xyzabc

@@ -15,7 +15,7 @@ from mcap.writer import Writer
 
 from cellctl.errors import CellError
 from cellctl.errors.config import FileInvalid
-from cellctl.errors.records import RecordingUnreadable
+from cellctl.errors.records.store import RecordingUnreadable
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
 from cellctl.processes.peg_in_hole.offline.curve import parse_curve
 from cellctl.processes.peg_in_hole.offline.judge import judge_by_task, judge_curve

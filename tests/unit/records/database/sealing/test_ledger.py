@@ -12,7 +12,7 @@ from sqlalchemy import Column, text
 from sqlalchemy.orm import Session
 
 from cellctl.calibration.store.envelope import StoredCalibration
-from cellctl.errors.records import StoreContradictsVersion
+from cellctl.errors.records.store import StoreContradictsVersion
 from cellctl.records import RunResult, RunStore
 from cellctl.records.database.schema import Base
 from cellctl.records.database.sealing import ledger

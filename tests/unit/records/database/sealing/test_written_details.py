@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from sqlalchemy.exc import StatementError
 
-from cellctl.errors.records import RecordAltered
+from cellctl.errors.records.store import RecordAltered
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import Document, RunDetail
 from cellctl.records.figures import Limit, figure
