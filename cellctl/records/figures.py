@@ -33,7 +33,7 @@ NO_LIMIT = Limit()
 KNOWN_TO = "_known_to"
 """Ends the key of the expanded uncertainty of a figure whose limit is the threshold at which a
 correction ends. The correction looks itself at how well the value is known."""
-NOT_DECIDED = "not decided"
+NOT_DECIDED, NOT_MEASURED = "not decided", "not measured"
 WITHIN_THRESHOLD = "within threshold, as measured"
 """Said in place of a verdict: such a threshold is no requirement on the part."""
 

@@ -23,6 +23,7 @@ from cellctl.errors.records.store import NotReplayable
 from cellctl.records.entries import Calibration, RunRecord
 from cellctl.records.replay.replayed import Replayed
 from cellctl.records.report.sections import ProcessPages, ReadArtefact
+from cellctl.records.required.required_figures import RequiredFigure
 from cellctl.runtime.interruption import Interruption
 from cellctl.runtime.procedure import Procedure, ProcedureReplay
 from cellctl.runtime.progress import ProgressBoard
@@ -105,6 +106,14 @@ class Process(ProcessDefinition, Generic[P, R, S]):
     @abstractmethod
     def open(self, prepared: Prepared[P], context: RunContext) -> R:
         """The run, once its record is open: what lasts over all beginnings of its steps."""
+
+    def required(self, run: R) -> Sequence[RequiredFigure]:  # noqa: ARG002
+        """The figures without which no part of this run is good, with the limits of its recipe.
+
+        The record keeps them before anything moves. One that was not measured is told as such in
+        everything that shows the run, and a run that ends without one is not good. By default none.
+        """
+        return ()
 
     @abstractmethod
     async def begin(self, run: R) -> S:

@@ -19,20 +19,21 @@ from cellctl.records.entered.gauges import (
 from cellctl.records.entered.notes import note_words, notes_of
 from cellctl.records.entered.said_by import gauge_entries, measured_by, said_by
 from cellctl.records.entries import AuditEntry, Figure, Gauge, LoopPass, RunHead, RunRecord, Verdict
-from cellctl.records.figures import NO_LIMIT, verdicts
+from cellctl.records.figures import NO_LIMIT, NOT_MEASURED, verdicts
 from cellctl.records.outcome import GOOD_ENDS, outcome
 from cellctl.records.report.acceptance.faults import fault_box
 from cellctl.records.report.acceptance.runs_before import RunBefore, words_of_runs_before
 from cellctl.records.report.acceptance.table import limit_text
 from cellctl.records.report.acceptance.timeline import during
 from cellctl.records.report.text import decimals, duration, fixed, number, quantity
+from cellctl.records.required.required_figures import not_measured
 from cellctl.terminal.consoles import console_of_tables
 
 _WIDE = 100
 """Columns from which on the list has the name of the process."""
 _UNBROKEN = 1000
 """Columns in which every list has its place."""
-_VERDICTS = {str(Verdict.PASS): "green", str(Verdict.FAIL): "red"}
+_VERDICTS = {str(Verdict.PASS): "green", str(Verdict.FAIL): "red", NOT_MEASURED: "red"}
 _COLOURS = {"open": "yellow", **dict.fromkeys(GOOD_ENDS, "green")}
 
 
@@ -62,8 +63,10 @@ def show_record(
     for loop in dict.fromkeys(entry.loop for entry in record.passes):
         console.print(_passes([entry for entry in record.passes if entry.loop == loop]))
     judged = [entry for entry in record.newest_figures.values() if entry.verdict is not None]
-    if judged:
-        console.print(_figures(judged, verdicts(record.newest_figures)))
+    lacking = not_measured(record)
+    if judged or lacking:
+        said = {**verdicts(record.newest_figures), **{one.key: NOT_MEASURED for one in lacking}}
+        console.print(_figures([*judged, *lacking], said))
     for gauge in record.gauge_history:
         console.print(gauge_line(record, gauge, entered))
     if part_verdict(record) != record.head.result:

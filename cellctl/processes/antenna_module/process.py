@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from cellctl.processes.antenna_module.run import PluggingRun
     from cellctl.processes.antenna_module.state import GripperEmpty
     from cellctl.processes.antenna_module.stations import AntennaCell
+    from cellctl.records.required.required_figures import RequiredFigure
     from cellctl.runtime.procedure import Procedure, ProcedureReplay
 
 # What computes is imported where it is used: whoever only reads a cell file loads this module too,
@@ -174,6 +175,13 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
         from cellctl.processes.antenna_module.run import PluggingRun
 
         return PluggingRun.of(prepared.facts, self.services, context, last_check=self._last_check)
+
+    def required(self, run: "PluggingRun") -> "Sequence[RequiredFigure]":
+        """The module in its place, the insertion, grip, mass and plan."""
+        from cellctl.processes.antenna_module.record.required import required_figures
+        from cellctl.processes.antenna_module.steps.contact import limits_of
+
+        return required_figures(run, limits_of(run))
 
     async def begin(self, run: "PluggingRun") -> "GripperEmpty":
         """A module that may be plugged; gripper open and empty, arm at home."""

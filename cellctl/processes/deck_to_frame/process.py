@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from cellctl.processes.deck_to_frame.run_facts import RunFacts
     from cellctl.processes.deck_to_frame.state import Ready
     from cellctl.processes.deck_to_frame.stations import DeckCell
+    from cellctl.records.required.required_figures import RequiredFigure
 
 # What computes is imported where it is used: whoever only reads a cell file loads this module too,
 # and an operator's command must not wait for vision and force.
@@ -171,6 +172,12 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         from cellctl.processes.deck_to_frame.run import OpenRun
 
         return OpenRun.of(prepared.facts, self.services, context)
+
+    def required(self, run: "OpenRun") -> "Sequence[RequiredFigure]":
+        """Seat, mating, errors before it, and the fit of every measurement."""
+        from cellctl.processes.deck_to_frame.record.required import required_figures
+
+        return required_figures(run.facts)
 
     async def begin(self, run: "OpenRun") -> "Ready":
         """The deck clear of the station, the heads over it; these count as unmoved from here on."""

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from cellctl.processes.peg_in_hole.run import PegFacts, PegRun
     from cellctl.processes.peg_in_hole.state import AtHome
     from cellctl.processes.peg_in_hole.stations import PegCell
+    from cellctl.records.required.required_figures import RequiredFigure
     from cellctl.runtime.procedure import Procedure
 
 # What computes is imported where it is used: whoever only reads a cell file loads this module too,
@@ -140,6 +141,12 @@ class PegInHole(Process["PegFacts", "PegRun", "AtHome"]):
         from cellctl.processes.peg_in_hole.run import PegRun
 
         return PegRun.of(prepared.facts, self.services.board, context)
+
+    def required(self, run: "PegRun") -> "Sequence[RequiredFigure]":
+        """Every item of the verdict, and the force of the insertion."""
+        from cellctl.processes.peg_in_hole.record.required import required_figures
+
+        return required_figures(run.facts.plan)
 
     async def begin(self, run: "PegRun") -> "AtHome":
         """The arm at home, out of the hole first."""

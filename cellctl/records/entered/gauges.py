@@ -13,6 +13,7 @@ from cellctl.errors.records.store import GaugeRefused, ValueRefused
 from cellctl.records.entered.said_by import gauge_entries, measured_by
 from cellctl.records.entries import DRY_RUN, AuditEntry, Gauge, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
+from cellctl.records.required.required_figures import not_measured
 
 GAUGE_HOLES = "gauge_holes"
 PART_VERDICT = "part_verdict"
@@ -72,7 +73,8 @@ def with_gauges(result: str | None, *, spoilt: bool) -> str | None:
 
 
 def for_programs(record: RunRecord, audit: Sequence[AuditEntry]) -> dict[str, Any]:
-    """What programs are told beside the record: ``part_verdict``, and each gauge with its verdict
+    """What programs are told beside the record: ``part_verdict``, the required figures that the run
+    has ended without (``not_measured``), and each gauge with its verdict
     and who measured and typed it; ``audit`` is the whole log."""
     entries = gauge_entries(record.head.number, audit)
 
@@ -82,6 +84,10 @@ def for_programs(record: RunRecord, audit: Sequence[AuditEntry]) -> dict[str, An
 
     return {
         PART_VERDICT: part_verdict(record),
+        "not_measured": [
+            {name: getattr(one, name) for name in ("key", "label", "unit", "lower", "upper")}
+            for one in not_measured(record)
+        ],
         "gauges": [told(gauge) for gauge in record.gauges],
         "gauge_history": [told(gauge) for gauge in record.gauge_history],
     }

@@ -36,12 +36,13 @@ from cellctl.records.report.text import (
     standard_uncertainty,
     when,
 )
+from cellctl.records.required.required_figures import REQUIRED
 from cellctl.records.run_recorder import EXPOSURES
 from cellctl.records.units import words
 
 REPLAY_INPUT = ".input"
 """Documents of these keys are for ``cellctl replay``: numbers in full length that nobody reads."""
-_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES, TAKEN, RIMS, TOLD})
+_SHOWN_ELSEWHERE = frozenset({GAUGE_HOLES, PARTS, EXPOSURES, TAKEN, RIMS, TOLD, REQUIRED})
 FIT = "fit"
 """Entry of a pose's detail, with what ``_fit_row`` shows."""
 GAUGE_VERDICTS: Mapping[Verdict | None, tuple[str, RowMark]] = {

@@ -9,6 +9,8 @@ from cellctl.errors.calibration import CalibrationRecordInvalid
 from cellctl.errors.records.store import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import DRY_RUN, PRODUCTION, RunResult
+from cellctl.records.figures import NOT_MEASURED
+from cellctl.records.required.required_figures import missing_figures, required_document
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
 from cellctl.runtime.interruption import Interruption
@@ -85,6 +87,8 @@ class ProductionJob(Job):
             await warn_of_earlier_part(store, self._recipe, self._command, run, self._warn)
         context = RunContext(self._recorder, self._safe_point, self._interruption)
         opened = self._process.open(prepared, context)
+        if mode == PRODUCTION and (required := self._process.required(opened)):
+            await self._recorder.add(required_document(required))
         self._begun = opened, await self._process.begin(opened)
 
     async def execute(self) -> None:
@@ -131,6 +135,8 @@ class ProductionJob(Job):
         record = await self._process.services.store.do(RunStore.run, self.run_number)
         if beyond := record.beyond_limits:
             raise FigureBeyondLimit(", ".join(f"{one.label} {one.value}" for one in beyond))
+        if lacking := missing_figures(record):
+            raise FigureBeyondLimit(", ".join(f"{one.label} {NOT_MEASURED}" for one in lacking))
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
         """Close the run record; nothing to close when it could not be opened."""

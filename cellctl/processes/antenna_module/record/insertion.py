@@ -1,6 +1,7 @@
 """The insertion in the record: figures with limits, the curve as a file."""
 
 import asyncio
+from collections.abc import Mapping
 
 from cellctl.geometry.pose import MM
 from cellctl.processes.antenna_module.insertion.curve import InsertionCurve, curve_text
@@ -27,19 +28,27 @@ async def record_judgement(
     await run.recorder.document(keys.INSERTION, content)
     found = judgement.features
     seat_mm = None if found.seat_depth_m is None else found.seat_depth_m / MM
-    seat, off = limits.seat_depth_m / MM, limits.seat_tolerance_m / MM
-    greatest_n = limits.greatest_n + limits.over_n
+    judged = judged_limits(limits)
     await run.recorder.figures(
         [
-            figure(keys.SEAT_DEPTH, seat_mm, "mm", limit=Limit(seat - off, seat + off)),
+            figure(keys.SEAT_DEPTH, seat_mm, "mm", limit=judged[keys.SEAT_DEPTH]),
             figure(keys.PEAK, found.peak_n, "N"),
-            figure(keys.TOTAL, found.total_n, "N", limit=Limit(upper=greatest_n)),
-            figure(keys.SIDE, found.side_n, "N", limit=Limit(upper=limits.sliding_side_n)),
-            figure(
-                keys.MOMENT_Z, found.moment_z_n_m, "N·m", limit=Limit(upper=limits.moment_z_n_m)
-            ),
+            figure(keys.TOTAL, found.total_n, "N", limit=judged[keys.TOTAL]),
+            figure(keys.SIDE, found.side_n, "N", limit=judged[keys.SIDE]),
+            figure(keys.MOMENT_Z, found.moment_z_n_m, "N·m", limit=judged[keys.MOMENT_Z]),
         ]
     )
+
+
+def judged_limits(limits: InsertionLimits) -> Mapping[str, Limit]:
+    """Of the figures that say how the insertion went, by their keys."""
+    seat, off = limits.seat_depth_m / MM, limits.seat_tolerance_m / MM
+    return {
+        keys.SEAT_DEPTH: Limit(seat - off, seat + off),
+        keys.TOTAL: Limit(upper=limits.greatest_n + limits.over_n),
+        keys.SIDE: Limit(upper=limits.sliding_side_n),
+        keys.MOMENT_Z: Limit(upper=limits.moment_z_n_m),
+    }
 
 
 def _bounds(limits: InsertionLimits) -> list[tuple[float, float, float]]:

@@ -4,8 +4,8 @@ from cellctl.processes.antenna_module.record import keys
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.acceptance.requirement import (
     RequirementGroup,
-    not_measured,
     of_figures,
+    unmeasured,
 )
 
 _GROUPS = (
@@ -42,7 +42,7 @@ _GROUPS = (
     ),
 )
 _ALWAYS = (keys.PLACED, keys.PLACED_TURN, keys.SEAT_DEPTH, keys.TOTAL)
-"""What every plugging finds that comes to its end."""
+"""What every plugging has found that came to its end, in runs that do not say what they require."""
 WORDS = {
     keys.REGRIPS: "times that the module was put back and gripped again",
     keys.SECOND_LOOKS: "looks that were taken a second time",
@@ -56,7 +56,6 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
     """Every requirement on a plugging; what its run has ended without is not measured."""
     groups = []
     for title, note, titles in _GROUPS:
-        wanted = {key: titles[key] for key in _ALWAYS if key in titles}
-        rows = *of_figures(record, titles), *not_measured(record, wanted)
+        rows = *of_figures(record, titles), *unmeasured(record, titles, _ALWAYS)
         groups.append(RequirementGroup(title, rows, note))
     return tuple(groups)

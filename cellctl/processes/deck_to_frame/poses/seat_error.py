@@ -76,10 +76,15 @@ def pin_holes(holes: Sequence[Hole]) -> list[Hole]:
     return [hole for hole in holes if hole.kind == "pin"]
 
 
+def judged_holes(holes: Sequence[Hole]) -> Sequence[Hole]:
+    """At which the lateral offset of a seated deck is judged: every hole, where it has no pins."""
+    return pin_holes(holes) or holes
+
+
 def seat_error(M_T_D: UncertainPose, thickness_m: float, holes: Sequence[Hole]) -> SeatError:
     """Error of a seated deck, judged at its pin holes, or at every hole where it has none."""
     seat = RigidTransform.from_translation([0.0, 0.0, thickness_m])
-    judged = pin_holes(holes) or holes
+    judged = judged_holes(holes)
     offsets_mm = {
         hole.name: float(np.linalg.norm(_moved(M_T_D.pose, hole)[:2])) / MM for hole in judged
     }

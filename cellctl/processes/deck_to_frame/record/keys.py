@@ -7,7 +7,9 @@ BASE, FLANGE, HEAD_1, FRAME, DECK = "base", "flange", "c1", "frame", "deck"
 """Frames of the recorded poses."""
 FLANGE_T_DECK = "flange_T_deck"
 
-LOOP = "pose correction"
+LOOP, SEATED = "pose correction", "seated"
+FITTED = ("frame", "deck", LOOP, SEATED)
+"""What is registered with its drawing in every assembly."""
 COMPONENTS = (
     ("X", "mm"), ("Y", "mm"), ("Z", "mm"),
     ("rx", "°"), ("ry", "°"), ("rz", "°"),

@@ -67,6 +67,19 @@ def result_record(result: MatingResult) -> dict[str, Any]:
     }
 
 
+RESULT_UNITS = {
+    "hold_force": "N",
+    "hold_lateral": "N",
+    "seat_gap": "mm",
+    "released_force": "N",
+    PEAK_FORCE: "N",
+    "peak_filtered_force": "N",
+    "peak_lateral": "N",
+    "peak_moment": "N·m",
+}
+"""Units of the figures with a limit, by their keys."""
+
+
 def result_limits(settings: MatingSettings) -> Mapping[str, Limit]:
     """Limits of the figures of ``result_record``, by their keys.
 

@@ -13,10 +13,11 @@ from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
     guarded,
-    not_measured,
     of_figures,
+    unmeasured,
 )
 from cellctl.records.report.sections import Part
+from cellctl.records.required.required_figures import REQUIRED
 
 _MATING = {
     "seat_gap": "gap deck to frame by travel of the arm",
@@ -37,11 +38,14 @@ _SEATED = {
 """What every verification finds."""
 _MATED = ("seat_gap", "hold_force", "released_force", keys.PEAK_FORCE)
 """What every mating finds; the further figures are of the same curves."""
+_ERRORS = {
+    keys.POSITION_ERROR: "error of the position, worst axis",
+    keys.ANGLE_ERROR: "error of the angle, worst axis",
+}
+_FITTED_PARTS = ("frame", "deck", "deck before mating", "seated deck")
 _FITS = {
-    "frame": "greatest residual of a hole, frame",
-    "deck": "greatest residual of a hole, deck",
-    keys.LOOP: "greatest residual of a hole, deck before mating",
-    "seated": "greatest residual of a hole, seated deck",
+    f"{keys.WORST_RESIDUAL}.{kind}": f"greatest residual of a hole, {part}"
+    for kind, part in zip(keys.FITTED, _FITTED_PARTS, strict=True)
 }
 _WORDS = {
     "approach.speed": "approach: speed, derived",
@@ -95,42 +99,59 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
     return (
         RequirementGroup(
             "Seated deck",
-            (*_seated(record), *not_measured(record, _SEATED)),
+            (*_seated(record), *unmeasured(record, {**_seat_titles(record), **_SEATED}, _SEATED)),
             "deck against frame after release, by the stereo heads, in the axes of the frame",
         ),
         RequirementGroup(
             "Mating",
             (
                 *of_figures(record, _MATING),
-                *not_measured(record, {key: _MATING[key] for key in _MATED}),
+                *unmeasured(record, _MATING, _MATED),
             ),
             "in the axes of the deck, gravity removed; without U, because nobody has evaluated an "
             "uncertainty of the force sensor",
         ),
         RequirementGroup(
             "Deck at the stand-off, before mating",
-            tuple(_before_mating(record)),
+            (
+                *_before_mating(record),
+                *(replace(one, threshold=True) for one in unmeasured(record, _ERRORS, ())),
+            ),
             "last pass, in the axes of the frame; ends the correction and is no "
             "requirement on the part",
         ),
         RequirementGroup(
             "Measurements",
-            tuple(
-                of_figures(
-                    record,
-                    {f"{keys.WORST_RESIDUAL}.{kind}": title for kind, title in _FITS.items()},
-                )
-            ),
+            (*of_figures(record, _FITS), *unmeasured(record, _FITS, ())),
             "distance of a hole from its place on the drawing, after registration",
         ),
     )
+
+
+def _seat_titles(record: RunRecord) -> Mapping[str, str]:
+    """Of the figures of the seat that a run requires; those of earlier versions name none."""
+    offsets, turns = f"{keys.PIN_OFFSETS}.", f"{keys.SEATED_ERROR}.r"
+    asked = record.document(REQUIRED)
+    return {
+        **{key: _offset_title(key) for key in asked if key.startswith(offsets)},
+        keys.GAP_BY_VISION: _SEATED[keys.GAP_BY_VISION],
+        **{key: _turn_title(key[-1]) for key in asked if key.startswith(turns)},
+    }
+
+
+def _offset_title(key: str) -> str:
+    return f"lateral offset at hole {key.removeprefix(f'{keys.PIN_OFFSETS}.')}"
+
+
+def _turn_title(axis: str) -> str:
+    return f"rotation deck to frame about {axis}"
 
 
 def _seated(record: RunRecord) -> Iterator[Requirement]:
     prefix = f"{keys.PIN_OFFSETS}."
     holes = [key.removeprefix(prefix) for key in record.newest_figures if key.startswith(prefix)]
     wanted = [
-        (f"{prefix}{hole}", f"lateral offset at hole {hole}",
+        (f"{prefix}{hole}", _offset_title(f"{prefix}{hole}"),
          f"{keys.PIN_OFFSETS}_{keys.UNCERTAINTY}.{hole}")
         for hole in holes
     ]  # fmt: skip
@@ -151,7 +172,7 @@ def _rotations(record: RunRecord) -> Iterator[Requirement]:
         guarded(
             record,
             f"{keys.SEATED_ERROR}.r{axis}",
-            f"rotation deck to frame about {axis}",
+            _turn_title(axis),
             _times_coverage(record.value(f"{keys.SEATED_SIGMA}.r{axis}")),
         )
         for axis in "xyz"

@@ -25,8 +25,8 @@ from cellctl.processes.peg_in_hole.verdict.judgement import (
 from cellctl.records.entries import RunRecord
 from cellctl.records.report.acceptance.requirement import (
     RequirementGroup,
-    not_measured,
     of_figures,
+    unmeasured,
 )
 from cellctl.records.report.text import quantity
 
@@ -86,8 +86,8 @@ def acceptance(record: RunRecord) -> tuple[RequirementGroup, ...]:
 
 
 def _group(record: RunRecord, title: str, titles: Mapping[str, str], note: str) -> RequirementGroup:
-    wanted = {key: words for key, words in titles.items() if _always(record, key)}
-    rows = *of_figures(record, titles), *not_measured(record, wanted)
+    always = [key for key in titles if _always(record, key)]
+    rows = *of_figures(record, titles), *unmeasured(record, titles, always)
     return RequirementGroup(title, rows, note)
 
 

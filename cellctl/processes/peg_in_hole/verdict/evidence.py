@@ -57,3 +57,19 @@ class InsertionEvidence:
         if capture is not None:
             record["capture"] = {name: getattr(capture, name) for name in capture.__slots__}
         return record
+
+
+NOTHING_KNOWN = InsertionEvidence(
+    depth_m=None,
+    seat_force_n=None,
+    seat_slope_n_m=None,
+    held_way_m=None,
+    unrubbed_way_m=None,
+    with_feed_n=None,
+    dropped_n=None,
+    capture=None,
+    greatest_force_n=None,
+    grip_force_n=None,
+    retouch_error_m=None,
+)
+"""Of a part that nobody has inserted yet."""

@@ -1,10 +1,11 @@
 """A requirement on a part or on its making, beside what was found."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from cellctl.records.entries import DRY_RUN, RunRecord, RunResult, Verdict
+from cellctl.records.entries import DRY_RUN, Figure, RunRecord, RunResult, Verdict
 from cellctl.records.figures import NO_LIMIT, Limit
+from cellctl.records.required.required_figures import not_measured, states_required
 from cellctl.records.units import scaled, unit_on_pages
 
 
@@ -104,16 +105,38 @@ def of_figures(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Require
             yield found
 
 
-def not_measured(record: RunRecord, titles: Mapping[str, str]) -> Iterator[Requirement]:
+def missing(entry: Figure, title: str = "", *, threshold: bool = False) -> Requirement:
+    """A requirement that nothing was measured for, with its limit."""
+    return Requirement(
+        title or entry.label,
+        None,
+        entry.unit,
+        Limit(entry.lower, entry.upper),
+        Verdict.FAIL,
+        threshold=threshold,
+        figure=entry.key,
+    )
+
+
+def unmeasured(
+    record: RunRecord, titles: Mapping[str, str], always: Collection[str] | None = None
+) -> Iterator[Requirement]:
     """What a run that was to make a part has ended without, by the keys of its figures.
 
     A report that left these lines out would show nothing but green ones of a run that was cut off
-    before its verification. A good run has measured all that its recipe asks for; one that is open
-    may measure it yet.
+    before its verification. One that is open may measure it yet. Runs of earlier versions do not
+    say what they require: of them it is what every run measures that comes to its end, ``always``
+    of the titles where not all.
     """
+    if states_required(record):
+        lacking = {one.key: one for one in not_measured(record)}
+        yield from (missing(lacking[key], titles[key]) for key in titles if key in lacking)
+        return
     if record.head.mode == DRY_RUN or record.head.result in (None, RunResult.GOOD):
         return
     for key, title in titles.items():
+        if always is not None and key not in always:
+            continue
         nested = f"{key}."
         if not any(one == key or one.startswith(nested) for one in record.newest_figures):
             yield Requirement(title, None, "", NO_LIMIT, Verdict.FAIL, figure=key)

@@ -6,10 +6,18 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from cellctl.geometry.coverage import COVERAGE_FACTOR
 from cellctl.records.entered.gauges import gauge_limits, judge_gauge
 from cellctl.records.entries import RunRecord, Verdict
-from cellctl.records.figures import NO_LIMIT, NOT_DECIDED, WITHIN_THRESHOLD, Limit, is_undecided
+from cellctl.records.figures import (
+    NO_LIMIT,
+    NOT_DECIDED,
+    NOT_MEASURED,
+    WITHIN_THRESHOLD,
+    Limit,
+    is_undecided,
+)
 from cellctl.records.report.acceptance.requirement import (
     Requirement,
     RequirementGroup,
+    missing,
     of_figure,
     on_page,
 )
@@ -22,6 +30,7 @@ from cellctl.records.report.sections import (
     TableRow,
 )
 from cellctl.records.report.text import MISSING, fixed, quantity, with_unit
+from cellctl.records.required.required_figures import not_measured
 
 TITLE = "Acceptance"
 _COLUMNS = ("requirement", "measured", "U", "required", "accepted", "verdict", "found in")
@@ -113,12 +122,12 @@ def _rounded(value: float | None, unit: str, places: int | None) -> str:
 def _verdict(entry: Requirement) -> tuple[str, RowMark]:
     if entry.verdict is None:
         return ("optional, not entered" if entry.value is None else "no limit known"), RowMark.NONE
+    if entry.value is None and entry.verdict is Verdict.FAIL:
+        return f"✗ {NOT_MEASURED}", RowMark.BAD
     if entry.threshold:
         return _OF_THRESHOLDS[entry.verdict]
     if entry.accepted == NO_LIMIT and is_undecided(entry.value, entry.required, entry.expanded):
         return f"? {NOT_DECIDED}: {_too_wide(entry)}", RowMark.NONE
-    if entry.value is None and entry.verdict is Verdict.FAIL:
-        return "✗ not measured", RowMark.BAD
     return _VERDICTS[entry.verdict]
 
 
@@ -173,5 +182,6 @@ def _others(record: RunRecord, brought: Iterable[RequirementGroup]) -> Iterator[
     lines = [entry for group in brought for entry in group.requirements]
     shown = {entry.figure for entry in lines} | {entry.stands_for for entry in lines}
     found = (of_figure(record, key) for key in record.newest_figures if key not in shown)
-    rows = tuple(entry for entry in found if entry is not None)
+    lacking = (missing(one) for one in not_measured(record) if one.key not in shown)
+    rows = (*(entry for entry in found if entry is not None), *lacking)
     yield RequirementGroup("Further figures with a limit" if shown else "Figures", rows)

@@ -17,6 +17,7 @@ from cellctl.records.entered.gauges import GAUGE_HOLES
 from cellctl.records.entered.said_by import gauge_entries, measured_by
 from cellctl.records.entries import Document
 from cellctl.records.figures import KNOWN_TO, Limit, figure
+from cellctl.records.required.required_figures import required, required_document
 from tests.unit.records.conftest import start
 from tests.unit.records.sample import good_run
 
@@ -88,6 +89,24 @@ def test_one_run_in_figures(runner: CliRunner, folder: str) -> None:
     assert "+1.2143" in result.stdout
     assert re.search(r"peak force\s+38.4 N\s+–\s+50 N\s+pass", result.stdout)
     assert "gauge 5.95 mm (simulator)" in result.stdout
+
+
+def test_what_a_run_has_ended_without_is_shown_and_told_to_programs(
+    runner: CliRunner, store: RunStore, tmp_path: Path
+) -> None:
+    run = start(store)
+    store.add(run, required_document([required("seat.gap", "mm", Limit(-0.1, 0.1))]))
+    asked = [str(run), "--data-dir", str(store.path)]
+    open_run = runner.invoke(app, ["show", *asked]).stdout
+    assert "not measured" not in open_run
+    store.close_run(run, RunResult.ABORTED)
+    shown = runner.invoke(app, ["show", *asked]).stdout
+    assert re.search(r"seat: gap\s+–\s+-0.1 mm\s+0.1 mm\s+not measured", shown)
+    told = [json.loads(runner.invoke(app, ["show", *asked, "--json"]).stdout)]
+    runner.invoke(app, ["export", *asked, "--out", str(tmp_path / "out")])
+    told.append(json.loads((tmp_path / "out" / "run.json").read_text(encoding="utf-8")))
+    missing = {"key": "seat.gap", "label": "seat: gap", "unit": "mm", "lower": -0.1, "upper": 0.1}
+    assert [one["not_measured"] for one in told] == [[missing]] * 2
 
 
 def test_what_ends_a_correction_is_not_called_a_pass(runner: CliRunner, store: RunStore) -> None:

@@ -19,9 +19,11 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.result import Result
 from cellctl.packml.state import State
 from cellctl.processes.deck_to_frame.faults import ContactEarly
+from cellctl.processes.deck_to_frame.process import DeckToFrame
 from cellctl.records.entries import RunRecord, Verdict
 from cellctl.records.figures import Limit
 from cellctl.records.parts import mate_serial
+from cellctl.records.required.required_figures import REQUIRED, not_measured, required
 from cellctl.records.store import RunStore
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
@@ -206,6 +208,48 @@ async def test_the_loop_has_a_number_only_while_it_lasts(rig: DaemonRig) -> None
     await rig.to(State.COMPLETED)
     assert {step for step, iteration in told if iteration} == {40}
     assert rig.shown().iteration == 0
+
+
+async def test_a_good_part_has_measured_all_that_it_requires_by_no_wider_limit(
+    rig: DaemonRig,
+) -> None:
+    await rig.started()
+    await rig.to(State.COMPLETED)
+    record = await rig.record()
+    asked, found = record.document(REQUIRED), record.newest_figures
+    assert {"pin_offsets.P1", "seat_gap_by_vision", "peak_moment", "worst_residual.seated"} <= set(
+        asked
+    )
+    for key, wanted in asked.items():
+        # The worst angle is judged by the threshold of its own axis.
+        most = 1e9 if wanted["upper"] is None else wanted["upper"]
+        assert found[key].unit == wanted["unit"], key
+        assert found[key].label == wanted["label"], key
+        assert (found[key].upper or -1e9) <= most + 1e-12, key
+        assert (found[key].lower is None) == (wanted["lower"] is None), key
+    judged = {entry.key for entry in record.figures if entry.verdict} - {"seat_rotation"}
+    assert judged == set(asked), "seat_rotation is the worst of seated_error"
+
+
+async def test_a_run_that_is_cut_short_tells_what_it_has_not_measured(rig: DaemonRig) -> None:
+    await in_contact(rig)
+    await rig.take(Command.ABORT)
+    await rig.to(State.ABORTED)
+    lacking = {one.key for one in not_measured(await rig.record())}
+    assert {"pin_offsets.P1", "seat_gap_by_vision", "hold_force", "force_while_verified"} <= lacking
+    assert not {"worst_residual.frame", "position_error"} & lacking
+
+
+async def test_a_part_without_a_required_figure_is_not_good(
+    rig: DaemonRig, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wanted = (required("torque", "N·m", Limit(upper=2.0)),)
+    monkeypatch.setattr(DeckToFrame, "required", lambda _process, _run: wanted)
+    await rig.started()
+    await rig.to(State.STOPPED)
+    head = (await rig.record()).head
+    assert (head.result, head.fault_number) == ("bad", 811)
+    assert "torque not measured" in (head.fault or "")
 
 
 async def in_contact(rig: DaemonRig) -> int:

@@ -18,7 +18,10 @@ from cellctl.processes.antenna_module.faults.plugging import MovedOnRelease, Plu
 from cellctl.processes.antenna_module.process import AntennaModule
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 from cellctl.processes.antenna_module.record import keys
+from cellctl.processes.antenna_module.record.required import required_figures
+from cellctl.processes.antenna_module.report.acceptance import _GROUPS
 from cellctl.processes.antenna_module.state import Inserted, PlugInspected
+from cellctl.processes.antenna_module.steps.contact import limits_of
 from tests.unit.processes.antenna_module.pushing.contact import PlugWorld, Push, Wrench
 from tests.unit.processes.antenna_module.steps.bench import TAUGHT, Bench, nothing_swings
 from tests.unit.processes.antenna_module.steps.test_grip_again import picked
@@ -126,6 +129,11 @@ async def test_a_module_that_stays_is_good(plugged: Plugged) -> None:
     assert figures[keys.PLACED] == pytest.approx(0.0, abs=2e-3)
     assert figures[keys.PLACED_TURN] == pytest.approx(0.0, abs=0.01)
     assert figures[keys.GAP] == pytest.approx(0.0, abs=5e-3)
+    asked = {one.figure.key for one in required_figures(state.run, limits_of(state.run))}
+    at_the_push = {keys.SEAT_DEPTH, keys.TOTAL, keys.SIDE, keys.MOMENT_Z}
+    assert asked - at_the_push - {keys.MASS} <= set(figures), "weighed when it was picked"
+    titled = {key for _, _, titles in _GROUPS for key in titles}
+    assert asked == titled, "each has its line in the acceptance record"
 
 
 async def test_a_pull_is_no_longer_than_the_recipe_allows(plugged: Plugged) -> None:

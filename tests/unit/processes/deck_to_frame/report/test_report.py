@@ -51,6 +51,7 @@ from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.report.acceptance.table import acceptance as acceptance_table
 from cellctl.records.report.export import export_run
 from cellctl.records.report.sections import ReportTable
+from cellctl.records.required.required_figures import required, required_document
 from tests.rigs.grey import confusable
 from tests.rigs.sweeps import sweep
 from tests.unit.records.conftest import start
@@ -196,6 +197,37 @@ def test_what_a_run_has_ended_without_is_not_measured(store: RunStore, ended: Ru
     for title in ("lateral offset at the pin holes", "gap deck to frame, by vision"):
         assert verdicts[title] == "✗ not measured"
     assert verdicts["greatest force along the approach, single samples"] == "✓ conforms"
+
+
+def test_every_requirement_of_a_run_that_was_cut_off_has_a_line_with_its_limit(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = start(store)
+    wanted = (
+        required("pin_offsets.P1", "mm", Limit(upper=0.2)),
+        required("seated_error.rx", "°", Limit(-0.02, 0.02)),
+        required("hold_lateral", "N", Limit(upper=8.0)),
+        required("position_error", "mm", Limit(upper=0.05)),
+        required("worst_residual.seated", "µm", Limit(upper=100.0)),
+        required("torque", "N·m", Limit(upper=2.0)),
+    )
+    store.add(run, required_document(wanted))
+    store.close_run(run, RunResult.ABORTED)
+    record = store.run(run)
+    table = acceptance_table(record, acceptance(record)).blocks[0]
+    assert isinstance(table, ReportTable)
+    rows = [tuple(cell.text for cell in row.cells) for row in table.rows if len(row.cells) > 1]
+    assert [(row[0], row[3]) for row in rows if row[5] == "✗ not measured"] == [
+        ("lateral offset at hole P1", "≤ 0.2 mm"),
+        ("rotation deck to frame about x", "± 0.02°"),
+        ("lateral force while seated", "≤ 8 N"),
+        ("error of the position, worst axis", "≤ 0.05 mm"),
+        ("greatest residual of a hole, seated deck", "≤ 100 µm"),
+        ("torque", "≤ 2 N·m"),
+    ]
+    text = text_of(export_run(store, run, tmp_path, pages=pages))
+    assert text.count("not measured") >= len(wanted)
+    assert "instead" not in text, "the document is for programs"
 
 
 def test_every_axis_limit_has_a_line_of_its_own(store: RunStore) -> None:

@@ -6,13 +6,17 @@ from typing import Any
 
 import pytest
 
+from cellctl.processes.peg_in_hole.plan.cycle_plan import cycle_plan
 from cellctl.processes.peg_in_hole.record import keys
+from cellctl.processes.peg_in_hole.record.required import required_figures
 from cellctl.processes.peg_in_hole.report.acceptance import acceptance
 from cellctl.processes.peg_in_hole.report.pages import pages
-from cellctl.processes.peg_in_hole.verdict.judgement import KEYED, PULL, RETOUCH, SLIP
+from cellctl.processes.peg_in_hole.verdict.judgement import KEYED, LOW_FORCE, PULL, RETOUCH, SLIP
 from cellctl.records import RunResult, RunStore
 from cellctl.records.entries import Artefact, Document, RunRecord
 from cellctl.records.figures import Limit, figure
+from cellctl.records.required.required_figures import required_document
+from tests.unit.processes.peg_in_hole.plan.test_cycle_plan import RECIPE, SETTINGS
 from tests.unit.processes.peg_in_hole.record.test_tick_log import ticked
 from tests.unit.records.conftest import start
 
@@ -102,3 +106,17 @@ def test_what_the_sections_and_the_first_page_have_is_not_listed_again(store: Ru
     made = pages(record, no_file)
     assert {keys.CYCLE, keys.TRACE, keys.CHOICE} <= made.documents
     assert keys.TASK not in made.documents
+
+
+def test_every_item_of_the_verdict_is_required_and_has_its_words(store: RunStore) -> None:
+    plan = cycle_plan(RECIPE, SETTINGS)
+    asked = required_figures(plan)
+    limits = {one.figure.key: (one.figure.lower, one.figure.upper) for one in asked}
+    assert limits[keys.PEAK] == (None, plan.task.limits.insertion_n)
+    assert limits[keys.check(LOW_FORCE)] == (plan.seat.least_n, None)
+    cut = ended(store, RunResult.ABORTED, required_document(asked))
+    shown = {entry.figure for group in acceptance(cut) for entry in group.requirements}
+    assert shown == set(limits)
+    touched = figure(keys.check(RETOUCH), 0.02, "mm", limit=Limit(upper=0.15))
+    by_touch = rows(ended(store, RunResult.ABORTED, required_document(asked), touched))
+    assert keys.check(SLIP) not in by_touch, "the touch on the rear counts in its place"
