@@ -141,7 +141,7 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
 
     @classmethod
     def not_yet_checked(cls, cell: CellConfig, recipe: Recipe, folder: Path) -> Iterable[str]:
-        """What only procedures 201 to 204 will hold against the cell."""
+        """What only procedures 201 to 204, or the first look of a run, hold against the cell."""
         from cellctl.processes.antenna_module.checks.uncalibrated import not_yet_checked
 
         return not_yet_checked(cell, cast(AntennaRecipe, recipe), folder)

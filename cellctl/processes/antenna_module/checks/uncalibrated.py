@@ -16,6 +16,7 @@ from cellctl.config.cell import CellConfig
 from cellctl.config.checks.places.over_places import BESIDE_MM, TURNED_DEG, flange_at
 from cellctl.config.issue import ConfigIssue
 from cellctl.geometry.pose import MM, pose_from_xyzabc
+from cellctl.processes.antenna_module.connector.marks import read_marks
 from cellctl.processes.antenna_module.recipe import AntennaRecipe
 from cellctl.processes.antenna_module.roles import (
     ARM,
@@ -63,6 +64,20 @@ def not_yet_checked(cell: CellConfig, recipe: AntennaRecipe, folder: Path) -> It
     }.items():
         if _lacks(cell, folder, kind):
             yield f"{what}, then check again"
+    yield _top_of_module(recipe, folder)
+
+
+def _top_of_module(recipe: AntennaRecipe, folder: Path) -> str:
+    """Nobody else states how large the module is: no drawing, no pose, no calibration. So whoever
+    has one at hand is told what to measure."""
+    top = read_marks(folder / recipe.module_top)
+    x_mm, y_mm = (float(one) for one in np.ptp(top.positions_m, axis=0) / MM)
+    return (
+        f"{recipe.module_top}: nothing else has the size of these marks, and a drawing of half or "
+        f"twice the size is found by the first look of a run (F475). Measure a module: by the "
+        f"drawing its {len(top.names)} marks are {top.diameter_m / MM:g} mm wide and their middles "
+        f"spread over {x_mm:g} x {y_mm:g} mm"
+    )
 
 
 def _lacks(cell: CellConfig, folder: Path, kind: str) -> bool:

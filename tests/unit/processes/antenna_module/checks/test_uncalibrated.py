@@ -1,5 +1,6 @@
 """A cell before its first calibrations: what its file says against itself, and what is left."""
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -48,7 +49,26 @@ def test_a_new_cell_is_told_what_nothing_contradicts_yet(new: Path, tmp_path: Pa
     assert examine_before_commissioning(new).remarks == ()
     calibrated = written(tmp_path / "calibrated", "antenna.toml")
     done = CliRunner().invoke(whole_app(), ["check", str(calibrated)])
-    assert "not checked yet" not in done.stdout
+    left = [line for line in done.stdout.splitlines() if "not checked yet" in line]
+    assert len(left) == 1
+    assert "module-top.toml: nothing else has the size" in left[0]
+
+
+def test_a_module_is_measured_by_hand_where_nothing_else_tells_its_size(tmp_path: Path) -> None:
+    cell = written(tmp_path / "cell", "antenna.toml")
+    assert "its 3 marks are 4 mm wide and their middles spread over 24 x 10 mm" in check(cell)
+    drawings = cell.parent / "connectors"
+    shipped = drawings.resolve()
+    drawings.unlink()
+    shutil.copytree(shipped, drawings)
+    top = drawings / "module-top.toml"
+    text = top.read_text(encoding="utf-8").replace("= 4.0", "= 2.0").replace("12.0", "6.0")
+    top.write_text(text.replace("5.0]", "2.5]"), encoding="utf-8")
+    assert "its 3 marks are 2 mm wide and their middles spread over 12 x 5 mm" in check(cell)
+
+
+def check(cell_file: Path) -> str:
+    return CliRunner().invoke(whole_app(), ["check", str(cell_file)]).stdout
 
 
 def test_what_recipes_share_is_said_once(new: Path) -> None:
