@@ -8,6 +8,7 @@ from cellctl.config.checks.plausible.loads import G_M_S2
 from cellctl.config.driver_settings import measuring_range
 from cellctl.config.issue import ConfigIssue
 from cellctl.force.gravity.acceptance import PayloadLimits
+from cellctl.geometry.pose import MM
 from cellctl.processes.deck_to_frame.mating.settings import FAST_LIMIT_N
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe, Mating
 from cellctl.processes.deck_to_frame.roles import FORCE, MAIN
@@ -24,6 +25,8 @@ _WEIGHED_TO = PayloadLimits().mass_ratio + PayloadLimits().crosstalk_ratio
 _OVERSHOOT = 1.05
 """Impact and braking add so much to a force that grows until the arm stands: 5 % at most in
 simulated contacts at 1 to 5 mm/s with latencies of 100 and 250 ms."""
+_ALUMINIUM_KG_M3 = 2700.0
+"""Few decks are as heavy: most are panels with a core of honeycomb."""
 _MOST_RANGE = 10.0
 """Range of a sensor over the weight on it. Noise and cross-talk are shares of the range: beyond
 this, 1 % of it is a tenth of the weight."""
@@ -119,6 +122,21 @@ def unexpected_n(mating: Mating) -> float:
     return FAST_LIMIT_N + _OVERSHOOT * mating.stiffness_n_per_mm * way_mm
 
 
+def _light_deck(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
+    """A force below which an empty gripper is not told from one with such a deck (F530)."""
+    length_mm, width_mm = recipe.face_mm
+    solid_kg = length_mm * width_mm * recipe.deck_thickness_mm * MM**3 * _ALUMINIUM_KG_M3
+    hidden_n = recipe.mating.max_untared_force_n
+    if solid_kg * G_M_S2 < hidden_n:
+        said = (
+            f"hides {hidden_n / G_M_S2:.1f} kg: a deck of this face and thickness weighs "
+            f"{solid_kg:.1f} kg if it is solid aluminium and carries nothing, and an empty gripper "
+            "is then taken for one that still holds it (F530). Write about 4 % of the weight on "
+            "the sensor, if the deck weighs more than that"
+        )
+        yield ConfigIssue(f"{key}.mating.max_untared_force_n", f"{hidden_n:g}", said)
+
+
 def load_remarks(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
     """Forces that nothing bounds; a load that nothing is compared with, hardly compared, or weighed
     by too large a sensor. ``key`` is the path of the recipe."""
@@ -129,6 +147,7 @@ def load_remarks(cell: CellConfig, recipe: DeckRecipe, key: str) -> Iterator[Con
             f"pressed with up to {unexpected_n(recipe.mating):.0f} N at fast_speed_mm_s"
         )
         yield ConfigIssue(f"{key}.mating.unexpected_force_n", "(missing)", said)
+    yield from _light_deck(recipe, key)
     load = cell.robots[robot].load
     if load is None:
         said = (

@@ -102,3 +102,15 @@ def test_what_the_parts_take_is_asked_for() -> None:
     (remark,) = load_remarks(cell, recipe, "recipes[1]")
     assert remark.key == "recipes[1].mating.unexpected_force_n"
     assert "1595 N at fast_speed_mm_s" in remark.allowed
+
+
+def test_a_deck_that_an_empty_gripper_is_not_told_from_is_remarked_on() -> None:
+    cell, recipe = with_mating(max_untared_force_n=80.0)
+    assert list(load_remarks(cell, recipe, "recipes[1]")) == []
+    small = recipe.model_copy(update={"face_mm": (500.0, 400.0)})
+    (remark,) = load_remarks(cell, small, "recipes[1]")
+    assert remark.key == "recipes[1].mating.max_untared_force_n"
+    assert "hides 8.2 kg: a deck of this face and thickness weighs 8.1 kg" in remark.allowed
+    cell, recipe = with_mating(max_untared_force_n=79.0)
+    small = recipe.model_copy(update={"face_mm": (500.0, 400.0)})
+    assert list(load_remarks(cell, small, "recipes[1]")) == []
