@@ -95,6 +95,24 @@ def impossible_forces(force_n: Array, most_n: float, columns: Sequence[str]) -> 
     return None
 
 
+def unread_component(wrench: Array, columns: Sequence[str]) -> str | None:
+    """Of forces and moments, shape (n, k): one that never changes was not measured.
+
+    What is judged by it would pass as if nothing had acted.
+    """
+    still = [
+        f"{name} is {values[0]:g}"
+        for name, values in zip(columns, wrench.T, strict=True)
+        if np.ptp(values) == 0.0
+    ]
+    if not still:
+        return None
+    return (
+        f"{', '.join(still)} in all {len(wrench)} samples; expected at least the noise of a "
+        "sensor: a component that was not read, or rounded away?"
+    )
+
+
 def _speed_m_s(time_s: Array, depth_m: Array) -> float | None:
     """Of the middle of the way in; None where the recording does not go in."""
     low_m, high_m = depth_m.min(), depth_m.max()

@@ -7,6 +7,7 @@ from cellctl.force.contact.recorded_units import (
     impossible_forces,
     impossible_sampling,
     impossible_speed,
+    unread_component,
 )
 from cellctl.force.contact.recorded_zero import FEWEST_FREE, zero_off
 from cellctl.geometry.pose import MM, Array
@@ -38,6 +39,7 @@ def require_possible_curve(curve: InsertionCurve, socket: Connector) -> None:
         impossible_depths(curve.depth_m, seat_m, _DEPTH),
         impossible_speed(curve.t_s, curve.depth_m, _TIME),
         impossible_forces(curve.force_n, most_n, _FORCES),
+        unread_component(curve.force_n, _FORCES) or unread_component(curve.moment_n_m, _MOMENTS),
         _pulled_in(curve, socket.force_n[0]),
         _not_tared(curve, socket),
         _far_levers(curve, socket),

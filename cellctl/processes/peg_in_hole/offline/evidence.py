@@ -9,6 +9,7 @@ from cellctl.force.contact.recorded_units import (
     impossible_depths,
     impossible_forces,
     impossible_speed,
+    unread_component,
 )
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.faults import PegCurveInvalid
@@ -94,6 +95,7 @@ def _require_possible_units(curve: PegCurve, task: TaskOfCurve) -> None:
         impossible_depths(depth_m, hole_m, curve.columns.get(DEPTH, DEPTH)),
         impossible_speed(time_s, depth_m, curve.columns.get(TIME, TIME)),
         impossible_forces(force_n, task.seat.most_n, forces),
+        unread_component(force_n, forces),
     ):
         if why is not None:
             raise PegCurveInvalid(why)

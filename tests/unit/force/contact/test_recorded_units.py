@@ -8,6 +8,7 @@ from cellctl.force.contact.recorded_units import (
     impossible_forces,
     impossible_sampling,
     impossible_speed,
+    unread_component,
 )
 
 DEPTHS_M = np.linspace(-1e-3, 2.5e-3, 500)
@@ -59,3 +60,13 @@ def test_noise_alone_and_an_overload_are_possible_forces() -> None:
         assert impossible_forces(np.array([[0.0, 0.0, greatest_n]]), 30.0, names) is None
     assert impossible_forces(np.array([[0.0, 0.0, 0.03]]), 30.0, names) is not None
     assert impossible_forces(np.array([[0.0, 0.0, -3e4]]), 30.0, names) is not None
+
+
+def test_a_component_that_never_changes_was_not_read() -> None:
+    names = ("mx_n_m", "my_n_m", "mz_n_m")
+    moving = np.random.default_rng(1).normal(0.0, 0.002, (500, 3))
+    assert unread_component(moving, names) is None
+    moving[:, 1] = 0.0
+    why = unread_component(moving, names)
+    assert why is not None
+    assert why.startswith("my_n_m is 0 in all 500 samples")

@@ -54,6 +54,16 @@ def test_a_sign_is_named() -> None:
         require_possible_curve(replace(good, depth_m=-good.depth_m), SOCKET)
 
 
+@pytest.mark.parametrize(("part", "column"), [("force_n", "fx_n"), ("moment_n_m", "mx_n_m")])
+def test_a_component_that_was_not_read_judges_nothing(part: str, column: str) -> None:
+    """A side force of zeros had passed: a part that stands askew shows there."""
+    good = curve()
+    values = getattr(good, part).copy()
+    values[:, 0] = 0.0
+    with pytest.raises(InsertionCurveInvalid, match=rf"{column} is 0 in all \d+ samples"):
+        require_possible_curve(replace(good, **{part: values}), SOCKET)
+
+
 def test_moments_about_the_sensor_are_named() -> None:
     good = curve()
     lever_m = np.array([0.03, 0.0, 0.0])

@@ -197,6 +197,7 @@ def test_times_in_another_unit_are_refused() -> None:
         ("depth_mm", 1e-3, "depth_mm stays within 0.01"),
         ("fx_n fy_n fz_n", 1e-3, "fx_n, fy_n, fz_n: at most 0.01"),
         ("fx_n fy_n fz_n", 1e3, "fx_n, fy_n, fz_n: up to"),
+        ("fy_n", 0.0, "fy_n is 0 in all"),
         ("time_s", 1.5e-3, "time_s: by it the part went in at"),
     ],
 )
