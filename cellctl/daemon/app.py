@@ -23,6 +23,7 @@ from cellctl.calibration.store.validity import LOOK_S
 from cellctl.cell.devices import Cell
 from cellctl.cell.run_notes import RunNotes
 from cellctl.command.arbiter import CommandArbiter
+from cellctl.command.arrivals import ArrivalClock
 from cellctl.config import CellConfig, load_cell
 from cellctl.config.cell import Plc
 from cellctl.daemon.heap import collect_what_comes, give_back_large_blocks, give_back_small_blocks
@@ -101,10 +102,18 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # Before anybody can command: runs that an earlier process left open are closed as
         # interrupted, and its alarms are known again.
         await unit.open()
-        arbiter, plc = await _command_path(config.plc, unit, store)
+        arrivals = ArrivalClock()
+        arbiter, plc = await _command_path(config.plc, unit, store, arrivals)
         vitals = DaemonVitals(lambda: plc.line_beat_age_s)
         local = local_api(
-            cell, unit, arbiter, store, data_dir, registers=plc.shown, daemon=vitals.snapshot
+            cell,
+            unit,
+            arbiter,
+            store,
+            data_dir,
+            registers=plc.shown,
+            daemon=vitals.snapshot,
+            given_s=arrivals.given_s,
         )
         publisher = StatusPublisher(unit, partial(_show, plc, local.feed, cell.run_notes))
         stack.push_async_callback(plc.stop)
@@ -118,7 +127,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # still stands and the fault is known.
         stack.push_async_exit(partial(_end, unit, store, told))
         collect_what_comes()
-        watches = supervise(cell, unit, plc, publisher, store, vitals=vitals)
+        watches = supervise(cell, unit, plc, publisher, store, vitals=vitals, arrivals=arrivals)
         await until_told(stop, _work(cell, unit, watches, plc))
         _log.info("asked to end")
         notify("STOPPING=1")
@@ -133,7 +142,7 @@ def _tidy_at_rest(background: Background, _before: State, after: State) -> None:
 
 
 async def _command_path(
-    config: Plc, unit: UnitController, store: AsyncRunStore
+    config: Plc, unit: UnitController, store: AsyncRunStore, arrivals: ArrivalClock
 ) -> tuple[CommandArbiter, PlcInterface]:
     """The arbiter of all commands and the interface to the line PLC, which is not yet listening.
 
@@ -150,6 +159,7 @@ async def _command_path(
         lambda seq: store.do(RunStore.note_line_seq, seq),
         note_refusal=arbiter.note_refusal,
         previous_seq=await store.do(RunStore.line_seq),
+        given_s=arrivals.given_s,
     )
     return arbiter, plc
 

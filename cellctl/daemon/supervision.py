@@ -6,6 +6,7 @@ from functools import partial
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.cell.devices import Cell
+from cellctl.command.arrivals import ArrivalClock
 from cellctl.daemon.device_poller import DevicePoller
 from cellctl.daemon.disk_watch import DiskWatch
 from cellctl.daemon.ledger_watch import LedgerWatch
@@ -22,6 +23,8 @@ from cellctl.runtime.unit import UnitController
 PUBLISH_PERIOD_S = 0.1
 """Registers, page and recording get what has changed ten times a second. A change of state does not
 wait for that: it is shown at once."""
+TURN_PERIOD_S = 0.1
+"""A tenth of the turn after which commands count as waiting."""
 LINK_PERIOD_S = 0.25
 """A robot counts as silent after 1 s and a guard after 1 s: a quarter of that is added at most."""
 ASK_PERIOD_S = 2.0
@@ -41,6 +44,7 @@ async def supervise(
     store: AsyncRunStore,
     *,
     vitals: DaemonVitals,
+    arrivals: ArrivalClock,
 ) -> None:
     """Run until cancelled; ends with an exception when a part of the daemon itself dies."""
     beat = partial(_beat, plc, Watchdog())
@@ -55,12 +59,19 @@ async def supervise(
         tasks.create_task(_watch_disk(DiskWatch(store, unit)))
         tasks.create_task(_watch_ledger(LedgerWatch(store, unit)))
         tasks.create_task(watch_loop(vitals.turn))
+        tasks.create_task(_tell_turns(arrivals))
 
 
 def _beat(plc: PlcInterface, watchdog: Watchdog) -> None:
     """The machine has taken a turn: it lives, so does the daemon for systemd."""
     plc.beat()
     watchdog.feed()
+
+
+async def _tell_turns(arrivals: ArrivalClock) -> None:
+    while True:
+        arrivals.turn()
+        await asyncio.sleep(TURN_PERIOD_S)
 
 
 async def _publish(publisher: StatusPublisher) -> None:

@@ -1,7 +1,8 @@
 """One command to the unit, in the same form whoever gives it."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntFlag, StrEnum
+from typing import Self
 
 from cellctl.clock import now_s
 from cellctl.packml.command import Command
@@ -97,3 +98,11 @@ class UnitCommand:
     def only_halts(self) -> bool:
         """True for the commands that start nothing: Stop and Abort, Hold and Suspend."""
         return self.ends_motion or self.cntrl_cmd in (Command.HOLD, Command.SUSPEND)
+
+    def given_at(self, given_s: float) -> Self:
+        """The command with the monotonic time (s) at which somebody gave it, which may be long ago
+        in a daemon that stood still. A Stop or an Abort counts from now on: it ends what was given
+        before."""
+        if self.ends_motion:
+            return self
+        return replace(self, arrived_s=min(given_s, self.arrived_s))

@@ -6,6 +6,7 @@ No number is NaN: a value that is missing is null.
 """
 
 import math
+import secrets
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -32,6 +33,8 @@ SLOW_PERIOD_S = 0.5
 PRESSES_N = 10.0
 """Force from which on an arm may press: above what the zero of a sensor drifts by, and below every
 force of a mating."""
+_BEGIN_BITS = 48
+"""Browsers count exactly up to 53 bits."""
 _UNTARED_SHARE = 0.02
 """What a compensation leaves of a weight away from the attitude for which it was identified: twice
 the cross-talk of 1 % that data sheets state."""
@@ -58,9 +61,10 @@ class LiveView:
         self._slow: Object = {}
         self._slow_s = -math.inf
         self._decided_on: tuple[object, ...] = ()
-        self.decision = 0
+        self.decision = secrets.randbits(_BEGIN_BITS)
         """Counts what a person decides upon: state, mode, faults, links. A command says which
-        count its person has seen."""
+        count its person has seen. Begins anywhere, so that none of an earlier daemon fits: its
+        commands come again, and nobody here remembers their keys."""
 
     def look(self) -> int:
         """Count a change of what a person decides upon; the count by now."""

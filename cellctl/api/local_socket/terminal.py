@@ -28,6 +28,7 @@ from cellctl.api.local_socket.page_desk import PageDesk
 from cellctl.api.local_socket.refusal_remedy import remedy
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.users import Users
+from cellctl.clock import Monotonic, now_s
 from cellctl.command.submission import NoteRefusal, Submission, Submit
 from cellctl.config import CellConfig
 from cellctl.packml.command import Command
@@ -71,11 +72,14 @@ class Terminal:
         view: LiveView,
         *,
         note_refusal: NoteRefusal,
+        given_s: Monotonic = now_s,
     ) -> None:
+        """``given_s``: since when a command that is read now may have waited, monotonic time."""
         self._config = config
         self._machine = machine
         self._submit = submit
         self._note_refusal = note_refusal
+        self._given_s = given_s
         self._reporter = reporter
         self._view = view
         self._users = Users()
@@ -97,9 +101,9 @@ class Terminal:
         assert not isinstance(request, FollowRequest), "the server sees to those who follow"
         # Before the user is looked up, because the time of a command is that at which it was given.
         if isinstance(request, GivenCommand):
-            command = _given_at(self._command(request.command), request.given_s)
+            command = self._command(request.command).given_at(request.given_s)
         else:
-            command = self._command(request)
+            command = self._command(request).given_at(self._given_s())
         if not command.ends_motion:
             # A directory service may take a second, which a Stop cannot wait.
             await self._users.look_up(uid)
@@ -120,7 +124,8 @@ class Terminal:
         self._note_refusal(self._of_page(request, person), code, details)
 
     def _of_page(self, request: CommandRequest, person: str) -> UnitCommand:
-        return replace(self._command(request), source=Source.PAGE, person=person)
+        command = replace(self._command(request), source=Source.PAGE, person=person)
+        return command.given_at(self._given_s())
 
     async def _submitted(self, command: UnitCommand, details: Mapping[str, str]) -> Taken | Refused:
         # The same validator and queue as for the line; nothing is decided here.
@@ -194,14 +199,6 @@ def _named(request: CommandRequest, command: UnitCommand) -> Mapping[str, str]:
     if isinstance(request, StartCommand) and request.recipe and not command.recipe_id:
         return {"recipe_named": request.recipe}
     return {}
-
-
-def _given_at(command: UnitCommand, given_s: float) -> UnitCommand:
-    """The command with the time at which somebody gave it, which may be long ago in a daemon that
-    stood still. A Stop or an Abort counts from now on: it ends what was given before."""
-    if command.ends_motion:
-        return command
-    return replace(command, arrived_s=min(given_s, command.arrived_s))
 
 
 def _options(request: StartCommand) -> Options:

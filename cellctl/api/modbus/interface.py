@@ -18,6 +18,7 @@ from cellctl.api.modbus.register_map import HOLDING, INPUT, UNDEFINED_I32, Item,
 from cellctl.api.modbus.server import ModbusServer, ServerLimits
 from cellctl.api.modbus.status import Handshake, values
 from cellctl.api.modbus.submission import LineSubmission
+from cellctl.clock import Monotonic, now_s
 from cellctl.command.queue import CommandQueue
 from cellctl.command.submission import NoteRefusal, Submit
 from cellctl.config.cell import Plc
@@ -61,18 +62,21 @@ class PlcInterface:
         note_refusal: NoteRefusal,
         previous_seq: int | None = None,
         limits: ServerLimits | None = None,
+        given_s: Monotonic = now_s,
     ) -> None:
         """``heartbeat`` is fed here, and asked by whoever needs to know whether the line is alive.
 
         ``remember_seq`` writes the number of a command to disk; ``note_refusal`` hears of commands
         that are given up before they are submitted; ``previous_seq`` is the number that
-        it wrote last before this start.
+        it wrote last before this start. ``given_s``: since when a command that is read now may have
+        waited, monotonic time.
         """
         self._config = config
         self._submit = submit
         self._line_heartbeat = heartbeat
         self._remember_seq = remember_seq
         self._note_refusal = note_refusal
+        self._given_s = given_s
         self._latch = CommandLatch(previous_seq, config.word_order)
         heartbeat.on_lost.append(self._lost)
         self._registers = RegisterFile(on_commit=self._committed, on_heartbeat=self._beaten)
@@ -183,7 +187,7 @@ class PlcInterface:
         if committed is not None:
             seq, command = committed
             # Modbus knows no persons: the line is known by the address that it writes from.
-            named = replace(command, person=client)
+            named = replace(command, person=client).given_at(self._given_s())
             dropped = self._queue.add(self._submission(seq, named, client))
             if dropped is not None:
                 self._supersede(dropped)

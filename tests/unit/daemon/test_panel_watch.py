@@ -6,6 +6,7 @@ from typing import Any, cast
 import pytest
 
 from cellctl.api.modbus.interface import PlcInterface
+from cellctl.command.arrivals import ArrivalClock
 from cellctl.daemon.panel_watch import PanelWatch
 from cellctl.daemon.supervision import supervise
 from cellctl.daemon.vitals import DaemonVitals
@@ -44,7 +45,15 @@ async def test_an_emergency_stop_of_150_ms_in_contact_aborts_the_run(rig: Daemon
     line = cast(PlcInterface, Port())
     vitals = DaemonVitals(lambda: None)
     daemon = asyncio.create_task(
-        supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive, vitals=vitals)
+        supervise(
+            rig.bench.as_cell,
+            rig.unit,
+            line,
+            rig.publisher,
+            rig.archive,
+            vitals=vitals,
+            arrivals=ArrivalClock(),
+        )
     )
     rig.bench.cell.main.looks = PRESSED
     await asyncio.sleep(0.15)
@@ -116,7 +125,15 @@ async def test_a_latch_that_nobody_has_asked_for_aborts_the_run_at_once(rig: Dae
     line = cast(PlcInterface, Port())
     vitals = DaemonVitals(lambda: None)
     daemon = asyncio.create_task(
-        supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive, vitals=vitals)
+        supervise(
+            rig.bench.as_cell,
+            rig.unit,
+            line,
+            rig.publisher,
+            rig.archive,
+            vitals=vitals,
+            arrivals=ArrivalClock(),
+        )
     )
     await asyncio.sleep(0.15)
     rig.bench.cell.main.looks = LATCHED

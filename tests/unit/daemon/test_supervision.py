@@ -7,6 +7,7 @@ import pytest
 
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.cell.time_limits import TimeLimits
+from cellctl.command.arrivals import ArrivalClock
 from cellctl.config import CellConfig
 from cellctl.daemon.app import until_told
 from cellctl.daemon.supervision import LinkMonitor, supervise
@@ -180,7 +181,15 @@ async def supervised(rig: DaemonRig, stop: asyncio.Event) -> tuple[Port, asyncio
     port = Port()
     line = cast(PlcInterface, port)
     vitals = DaemonVitals(lambda: None)
-    work = supervise(rig.bench.as_cell, rig.unit, line, rig.publisher, rig.archive, vitals=vitals)
+    work = supervise(
+        rig.bench.as_cell,
+        rig.unit,
+        line,
+        rig.publisher,
+        rig.archive,
+        vitals=vitals,
+        arrivals=ArrivalClock(),
+    )
     task = asyncio.create_task(until_told(stop, work))
     await rig.until(lambda: port.beats > 0)
     return port, task

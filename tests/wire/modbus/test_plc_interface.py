@@ -10,6 +10,7 @@ from pymodbus.client import AsyncModbusTcpClient
 from cellctl.api.modbus.heartbeat import LineHeartbeat
 from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.submission import LineSubmission
+from cellctl.clock import now_s
 from cellctl.command.submission import Submission
 from cellctl.command.tracker import CommandTracker
 from cellctl.config.cell import Plc
@@ -40,6 +41,8 @@ class Line:
         self.ports: list[PlcInterface] = []
         self.clients: list[AsyncModbusTcpClient] = []
         self.beat = 0
+        self.waited_s = 0.0
+        """For how long what is read may have been in its socket."""
 
     async def submit(self, submission: Submission) -> RejectCode:
         """Submit as the arbiter does: Stop and Abort are not validated."""
@@ -75,6 +78,7 @@ class Line:
             self.remember,
             note_refusal=self.note_refusal,
             previous_seq=previous_seq,
+            given_s=lambda: now_s() - self.waited_s,
         )
 
     def note_refusal(
@@ -142,6 +146,20 @@ async def test_a_command_is_acknowledged_and_later_done(line: Line) -> None:
     block = await inputs(client)
     assert (block[DONE], block[RESULT]) == (1, Result.GOOD)
     assert block[STATUS] & 0b110 == 0b100
+
+
+async def test_a_command_counts_from_before_a_stand_still_and_a_stop_from_now_on(
+    line: Line,
+) -> None:
+    line.waited_s = 60.0
+    _, client = await line.open()
+    await line.command(client, 1, Command.RESET)
+    await until_answer(partial(inputs, client), lambda b: b[ACK] == 1)
+    await line.command(client, 2, Command.STOP)
+    await until_answer(partial(inputs, client), lambda b: b[ACK] == 2)
+    ages_s = [now_s() - one.command.arrived_s for one in line.commands]
+    assert ages_s[0] >= 60.0
+    assert ages_s[1] < 60.0
 
 
 async def test_a_refusal_is_a_number_not_a_modbus_exception(line: Line) -> None:

@@ -26,6 +26,7 @@ from cellctl.api.local_socket.messages import (
 from cellctl.api.local_socket.page_desk import AT_A_PANEL, refusal
 from cellctl.api.local_socket.reporter import Reporter
 from cellctl.api.local_socket.terminal import Terminal
+from cellctl.clock import Monotonic, now_s
 from cellctl.command.refusal_notes import NOTED_A_MINUTE
 from cellctl.errors.link import LinkLost
 from cellctl.errors.local import NotThePage
@@ -41,7 +42,7 @@ UID = os.getuid()
 
 
 class Page:
-    def __init__(self, rig: DaemonRig) -> None:
+    def __init__(self, rig: DaemonRig, given_s: Monotonic = now_s) -> None:
         cell = rig.bench.as_cell
         self.view = LiveView(cell, rig.unit, rig.arbiter, lambda: {"loop_late_s": 0.01})
         self.reporter = Reporter(cell, rig.unit, rig.arbiter, rig.archive, self.view)
@@ -54,6 +55,7 @@ class Page:
             self.reporter,
             self.view,
             note_refusal=rig.arbiter.note_refusal,
+            given_s=given_s,
         )
 
     def wanted(self, command: CommandRequest, **by: Any) -> PageCommand:
@@ -313,3 +315,20 @@ async def test_an_arm_that_pressed_when_its_sensor_fell_silent_may_press_still(
     assert force["stale"]
     assert [axis["value"] for axis in force["wrench"]] == [None] * 6
     assert force["presses_n"] == pytest.approx(38.0)
+
+
+async def test_a_command_that_comes_again_after_a_restart_is_not_obeyed_again(
+    rig: DaemonRig,
+) -> None:
+    """The daemon that knew its key is gone, and this one is in the same state."""
+    page = Page(rig)
+    wanted = page.wanted(PlainCommand(request="reset"))
+    assert isinstance(await page.ask(wanted), Taken)
+    await rig.to(State.IDLE)
+    await rig.restart()
+    again = Page(rig)
+    again.snapshot()
+    answer = await again.ask(wanted)
+    assert isinstance(answer, Refused)
+    assert answer.code == RejectCode.SUPERSEDED
+    assert rig.states == []
