@@ -4,9 +4,12 @@ A migration seals what earlier versions did not seal. A store of today that is m
 would have whatever was added to it sealed with the rest.
 
 No version has made a trigger or a view. A trigger changes a row in the transaction that writes it,
-before that is sealed: a figure beyond its limit would be read back, judged and sealed as another.
+before that is sealed: a figure beyond its limit would be read back, judged and sealed as another. A
+table does the same by a clause that no version has written: with ``ON CONFLICT IGNORE`` at a
+generated column a figure beyond its limit would not be written, and nobody told.
 """
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -24,6 +27,8 @@ _CAME_WITH: dict[int, tuple[tuple[str, str], ...]] = {
     3: (("ledger", "name"), ("gauges", "gauge_id"), ("ledger_head", "length")),
 }
 """Columns by the schema that brought them."""
+_FOREIGN_CLAUSE = re.compile(r"\b(AS|CHECK|COLLATE|CONFLICT|GENERATED|VIRTUAL)\b", re.IGNORECASE)
+"""Words of tables that decide what becomes of a row. No name in the store is one of them."""
 _KINDS_BEFORE = {3: frozenset({RUN, GAUGE}), 4: KINDS.keys() - {PROGRESS}, 5: KINDS.keys()}
 """All that earlier schemas than this one have sealed."""
 
@@ -36,13 +41,18 @@ def require_claimed(connection: Connection, file: Path, version: int) -> None:
 
 
 def foreign_parts(connection: Connection) -> list[str]:
-    """Triggers and views of a store, in words; empty in every store that nobody has altered."""
-    query = text("SELECT type, name FROM sqlite_master WHERE type IN ('trigger', 'view')")
-    return [f"{kind} {name}" for kind, name in connection.execute(query)]
+    """Triggers, views and altered tables of a store, in words; empty in every store that nobody has
+    altered."""
+    query = text("SELECT type, name, sql FROM sqlite_master WHERE type <> 'index'")
+    return [
+        f"{kind} {name}" if kind != "table" else f"table {name} with {found[0].upper()}"
+        for kind, name, sql in connection.execute(query)
+        if (found := _FOREIGN_CLAUSE.search(sql)) or kind != "table"
+    ]
 
 
 def require_own_parts(connection: Connection, file: Path) -> None:
-    """Raise ``StoreContradictsVersion`` for a trigger or a view."""
+    """Raise ``StoreContradictsVersion`` for a trigger, a view or an altered table."""
     if found := foreign_parts(connection):
         raise StoreContradictsVersion(f"{file} has {', '.join(found)}")
 

@@ -94,7 +94,8 @@ class Database:
         Raises ``RecordNotWritten`` when it is not, and from then on always; ``StoreLocked`` when
         another program was writing all the time, and nothing was written; ``RunUnknown`` when it
         refers to a run that does not exist; ``StoreTooNew`` when a later version has migrated the
-        store since it was opened; ``StoreContradictsVersion`` when it has a trigger or a view.
+        store since it was opened; ``StoreContradictsVersion`` when it has a trigger, a view
+        or an altered table.
         """
         if self._failed is not None:
             raise RecordNotWritten(f"the store failed earlier: {self._failed}")

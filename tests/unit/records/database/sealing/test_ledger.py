@@ -201,6 +201,40 @@ def test_a_trigger_that_changes_figures_before_they_are_sealed(copy: Path) -> No
     store.close()
 
 
+_UNWRITTEN = (
+    "ALTER TABLE figures RENAME TO before",
+    "CREATE TABLE figures ({columns}, beyond INT GENERATED ALWAYS AS"
+    " (CASE verdict WHEN 'fail' THEN 1 END) STORED UNIQUE ON CONFLICT IGNORE{references})",
+    "DROP TABLE before",
+    "INSERT INTO figures (id, run, key, label, unit, time, verdict)"
+    " VALUES (-1, -1, '', '', '', '2026-01-01 00:00:00.000000', 'fail')",
+)
+
+
+def test_a_table_that_drops_figures_beyond_their_limits(copy: Path) -> None:
+    """Nobody is told that the row was not written, and the rest is judged and sealed."""
+    store = RunStore(copy)
+    run = start(store, "SAT-0003")
+    with sqlite3.connect(copy / "store.sqlite") as database:
+        (made,) = database.execute(
+            "SELECT sql FROM sqlite_master WHERE name = 'figures'"
+        ).fetchone()
+    columns, _, keys = made.partition("(")[2].partition("PRIMARY KEY")
+    for statement in _UNWRITTEN:
+        execute(
+            copy,
+            statement.format(
+                columns=columns.strip().rstrip(","), references=f", PRIMARY KEY{keys[:-1]}"
+            ),
+        )
+    assert "the store has table figures with GENERATED" in store.verify()
+    with pytest.raises(StoreContradictsVersion, match="table figures"):
+        store.add(run, figure("offset", 3.0, "mm", limit=Limit(upper=0.2)))
+    with pytest.raises(StoreContradictsVersion, match="table figures"):
+        store.close_run(run, RunResult.GOOD)
+    store.close()
+
+
 def test_a_view_in_place_of_a_table(copy: Path) -> None:
     execute(copy, "ALTER TABLE gauges RENAME TO kept")
     execute(copy, "CREATE VIEW gauges AS SELECT * FROM kept")
