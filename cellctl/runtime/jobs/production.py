@@ -75,6 +75,7 @@ class ProductionJob(Job):
 
         Raises what the process raises, and the faults of the records.
         """
+        await self._record.look_at_files(self._recipe)
         # Before the record is opened: a run that lacks a calibration or a drawing has not begun and
         # leaves no record.
         prepared = await self._process.prepare(self._recipe)

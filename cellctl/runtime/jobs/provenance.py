@@ -33,6 +33,11 @@ class Provenance:
         """SHA-256 of the recipe with the content of its files."""
         return sha256(self.recipe).hexdigest()
 
+    def require_same_files(self, before: "Provenance") -> None:
+        """Raise ``FeatureFileInvalid`` for files of the recipe that differ from those of before."""
+        if changed := sorted(dict(self.files.items() ^ before.files.items())):
+            raise FeatureFileInvalid(f"{', '.join(changed)}: changed while the run was prepared")
+
     def artefacts(self) -> list[tuple[str, bytes, str]]:
         """Name, bytes and media type of each file."""
         return [

@@ -19,7 +19,7 @@ from cellctl.records.files.unwritten_end import UnwrittenEnd
 from cellctl.records.parts import MATE_SERIAL, PARTS
 from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.motion_recorder import MotionRecorder
-from cellctl.runtime.jobs.provenance import cell_artefact, provenance
+from cellctl.runtime.jobs.provenance import Provenance, cell_artefact, provenance
 from cellctl.runtime.jobs.told_devices import told_devices
 from cellctl.version import software
 
@@ -40,8 +40,20 @@ class JobRecord:
         """Number of the run; 0 until it is open."""
         self._cell = cell
         self._command = command
+        self._read_before: Provenance | None = None
+        """The files of the recipe as they were before the run was prepared; None where it reads
+        none."""
         self._opening: asyncio.Task[None] | None = None
         self._motion: MotionRecorder | None = None
+
+    async def look_at_files(self, recipe: Recipe) -> None:
+        """Remember the files of a recipe; to be called before anybody reads what a run goes by.
+
+        The record keeps them as they are when it is opened. A drawing that is saved in between
+        would be in the record of a run that was measured by another one. Raises
+        ``FeatureFileInvalid``.
+        """
+        self._read_before = await self._provenance(recipe)
 
     async def open(
         self,
@@ -52,7 +64,8 @@ class JobRecord:
         """The number of the run, opened at the first call; ``stored`` are what counts in it.
 
         Cell file, recipe and the files of the recipe go into it whole. The row is written by a
-        task of its own: a Stop must not leave one that nobody closes.
+        task of its own: a Stop must not leave one that nobody closes. Raises ``FeatureFileInvalid``
+        for files that are others than ``look_at_files`` has seen.
         """
         if self._opening is None:
             self._opening = asyncio.create_task(self._write(recipe, mode, stored))
@@ -138,8 +151,9 @@ class JobRecord:
         # The rows of the calibrations first: the run names them by their ids.
         for calibration in stored:
             await self.store.do(RunStore.add_calibration, calibration)
-        cell = self._cell
-        made_with = await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
+        made_with = await self._provenance(recipe)
+        if self._read_before is not None:
+            made_with.require_same_files(self._read_before)
         await self._start(
             process=recipe.process,
             recipe_id=recipe.id,
@@ -151,10 +165,14 @@ class JobRecord:
         )
         for artefact in made_with.artefacts():
             await self.store.do(RunStore.add_artefact, self.number, *artefact)
-        await self.store.do(RunStore.add, self.number, told_devices(cell))
+        await self.store.do(RunStore.add, self.number, told_devices(self._cell))
         if self._command.mate_serial:
             named = Document(PARTS, {MATE_SERIAL: self._command.mate_serial})
             await self.store.do(RunStore.add, self.number, named)
+
+    async def _provenance(self, recipe: Recipe) -> Provenance:
+        cell = self._cell
+        return await asyncio.to_thread(provenance, cell.config, cell.folder, recipe)
 
     async def _write_procedure(self, number: int, label: str) -> None:
         cell_file = cell_artefact(self._cell.config)

@@ -51,6 +51,7 @@ async def teach_plug_on_cell(
 
     Raises ``TeachScatter``, ``NobodyPlugged``, and what the steps raise.
     """
+    await context.record.look_at_files(recipe)
     facts = await read_facts(cell, recipe, services.calibrations, CALIBRATIONS, teaching=True)
     number = await context.record.open(recipe, MODE, facts.calibrations.records)
     recorder = RunRecorder(services.store, number)

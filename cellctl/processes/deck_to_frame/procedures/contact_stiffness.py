@@ -46,6 +46,7 @@ async def measure_contact_stiffness_on_cell(
     # Not the optional ones: a stiffness must not be measured with a plan that its own earlier
     # result has made faster.
     kinds = [kind for kind in CALIBRATIONS if kind.required]
+    await context.record.look_at_files(recipe)
     facts = await read_facts(cell, recipe, services.calibrations, kinds)
     number = await context.record.open(recipe, MODE, facts.calibrations.records)
     recorder = RunRecorder(services.store, number)

@@ -11,6 +11,7 @@ from cellctl.config import CellConfig
 from cellctl.config.load import cell_from_document
 from cellctl.errors.records.store import RecordNotWritten
 from cellctl.errors.vision import FeatureFileInvalid
+from cellctl.packml.state import State
 from cellctl.records.async_store import AsyncRunStore
 from cellctl.records.entries import RunRecord, RunResult
 from cellctl.records.files.artefacts import ArtefactFolder
@@ -20,6 +21,7 @@ from cellctl.runtime.jobs.record import JobRecord
 from cellctl.version import software
 from tests.rigs.shipped import shipped_cell
 from tests.unit.cell.bench import CELL_FILE, Bench, start_command
+from tests.unit.daemon_rig import DaemonRig
 
 
 @pytest.fixture
@@ -98,3 +100,26 @@ async def test_a_run_whose_files_could_not_be_kept_is_closed_all_the_same(
     finally:
         archive.close()
     assert (run.head.result, run.head.fault_number) == ("aborted", 803)
+
+
+async def test_a_drawing_that_is_saved_while_a_run_is_prepared_by_the_one_before(
+    rig: DaemonRig, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The record would show a drawing by which nothing was measured."""
+    monkeypatch.setattr(rig.bench.cell, "folder", folder)
+    head = rig.bench.cell.stereo_cameras["head_1"]
+    serial_number = head.serial_number
+
+    async def saved_meanwhile() -> str:
+        with (folder / "features" / "deck.toml").open("a") as file:
+            file.write("# another drawing\n")
+        return str(await serial_number())
+
+    monkeypatch.setattr(head, "serial_number", saved_meanwhile)
+    await rig.started()
+    await rig.to(State.STOPPED)
+    (fault,) = rig.unit.machine.faults
+    assert isinstance(fault, FeatureFileInvalid)
+    assert "deck_features.toml: changed" in fault.detail
+    assert await rig.runs() == []
+    monkeypatch.undo()
