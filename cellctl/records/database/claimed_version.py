@@ -44,11 +44,13 @@ def foreign_parts(connection: Connection) -> list[str]:
     """Triggers, views and altered tables of a store, in words; empty in every store that nobody has
     altered."""
     query = text("SELECT type, name, sql FROM sqlite_master WHERE type <> 'index'")
-    return [
-        f"{kind} {name}" if kind != "table" else f"table {name} with {found[0].upper()}"
-        for kind, name, sql in connection.execute(query)
-        if (found := _FOREIGN_CLAUSE.search(sql)) or kind != "table"
-    ]
+    found = []
+    for kind, name, sql in connection.execute(query):
+        if kind != "table":
+            found.append(f"{kind} {name}")
+        elif clause := _FOREIGN_CLAUSE.search(sql):
+            found.append(f"table {name} with {clause[0].upper()}")
+    return found
 
 
 def require_own_parts(connection: Connection, file: Path) -> None:
