@@ -17,8 +17,8 @@ and read in the next ones."""
 class ArrivalClock:
     """Told of each turn of the event loop, which it belongs to."""
 
-    def __init__(self, clock: Monotonic = now_s) -> None:
-        self._now_s = clock
+    def __init__(self, clock: Monotonic = now_s, held_s: float = HELD_S) -> None:
+        self._now_s, self._held_s = clock, held_s
         self._turned_s = clock()
         self._held: tuple[float, float] | None = None
         """Begin and end of the last turn that took too long."""
@@ -26,7 +26,7 @@ class ArrivalClock:
     def turn(self) -> None:
         """The event loop has come round once more."""
         time_s = self._now_s()
-        if time_s - self._turned_s > HELD_S:
+        if time_s - self._turned_s > self._held_s:
             self._held = self._turned_s, time_s
         self._turned_s = time_s
 
@@ -35,7 +35,7 @@ class ArrivalClock:
         is read now; the present, unless the loop was held."""
         time_s = self._now_s()
         # The sockets are read before the timers of the same turn: nobody has told of it yet.
-        if time_s - self._turned_s > HELD_S:
+        if time_s - self._turned_s > self._held_s:
             return self._turned_s
         if self._held is not None and time_s - self._held[1] < DRAIN_S:
             return self._held[0]

@@ -10,8 +10,8 @@ import pytest
 from cellctl.api.local_socket.messages import PlainCommand, to_line
 from cellctl.api.local_socket.server import LocalServer
 from cellctl.api.local_socket.socket_file import SocketFile
-from cellctl.command import arrivals, validator
 from cellctl.command.arrivals import DRAIN_S, HELD_S, ArrivalClock
+from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from tests.unit.api.local_socket.conftest import bench, rig
 from tests.unit.api.local_socket.test_page import Page
@@ -60,19 +60,11 @@ def test_soon_after_a_stand_still_what_is_read_is_new_again() -> None:
 
 
 @pytest.mark.parametrize("stood_still", [False, True])
-async def test_a_command_of_the_page_that_has_waited_too_long_moves_nothing(
-    rig: DaemonRig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *, stood_still: bool
+async def test_a_command_of_the_page_may_have_waited_since_before_a_stop(
+    rig: DaemonRig, tmp_path: Path, *, stood_still: bool
 ) -> None:
-    """The page has told its person long ago that nobody answers."""
-    monkeypatch.setattr(arrivals, "HELD_S", 0.2)
-    monkeypatch.setattr(validator, "MOST_AGE_S", 0.4)
-    clock = ArrivalClock()
+    clock = ArrivalClock(held_s=0.2)
     page = Page(rig, given_s=clock.given_s)
-
-    async def turn() -> None:
-        while True:
-            clock.turn()
-            await asyncio.sleep(0.01)
 
     async def nobody_follows(_writer: asyncio.StreamWriter) -> None:
         raise AssertionError
@@ -80,20 +72,21 @@ async def test_a_command_of_the_page_that_has_waited_too_long_moves_nothing(
     path = tmp_path / "s"
     server = LocalServer(SocketFile(path, ""), page.ask, nobody_follows)  # type: ignore[arg-type]
     await server.start()
-    turning = asyncio.create_task(turn())
-    await asyncio.sleep(0.05)
-    wanted = page.wanted(PlainCommand(request="reset"))
-    reader = socket.socket(socket.AF_UNIX)
-    with reader:
-        reader.connect(str(path))
-        reader.sendall(to_line(wanted))
+    clock.turn()
+    # In Stopped there is nothing to stop: no state changes that a person could have decided upon.
+    await page.ask(page.wanted(PlainCommand(request="stop")))
+    refused = len(rig.unit.machine.refusals)
+    with socket.socket(socket.AF_UNIX) as connection:
+        connection.connect(str(path))
+        connection.sendall(to_line(page.wanted(PlainCommand(request="reset"))))
         if stood_still:
-            time.sleep(0.6)  # noqa: ASYNC251 - the daemon stands still
-        await rig.until(lambda: bool(rig.unit.machine.refusals or rig.states))
-    turning.cancel()
+            time.sleep(0.4)  # noqa: ASYNC251 - the daemon stands still
+        else:
+            clock.turn()
+        await rig.until(lambda: len(rig.unit.machine.refusals) > refused or bool(rig.states))
     await server.stop()
     if stood_still:
         assert rig.states == []
-        assert rig.unit.machine.refusals[-1].request == "command 1"
+        assert rig.unit.machine.refusals[-1].code is RejectCode.SUPERSEDED
     else:
         await rig.to(State.IDLE)
