@@ -139,8 +139,11 @@ class TareImplausible(ForceError):
     """The residual wrench before the tare is larger than compensation can leave."""
 
     number = 521
-    text = "Force at the stand-off is implausible before the tare"
-    cause = "Payload identification out of date, another part, or the part already touches."
+    text = "Force is implausible before the tare"
+    cause = (
+        "Payload identification out of date, another part, the part already touches, or another "
+        "load than the `load` of the robot's section."
+    )
     remedy = "Check that the part hangs free; identify the payload again."
     reaction = Reaction.STOP
 

@@ -13,12 +13,10 @@ from cellctl.cell.guarded_motion.guarded_moves import (
     guarded,
     leave_weight_to_tare,
 )
+from cellctl.cell.guarded_motion.hanging_load import LEVER_M, require_hanging
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.geometry.pose import Array
-
-LEVER_M = 0.5
-"""No load hangs farther from the sensor than this."""
 
 
 @asynccontextmanager
@@ -28,7 +26,8 @@ async def guarded_section(arm: GuardedRobot, tolerance: WrenchTolerance) -> Asyn
     A trip stops the robot at once, and whoever supervises the guard has its fault. Without a
     gravity compensation the wrench at the beginning, at standstill, is taken as zero, and its
     weight is added to the tolerance: the load is felt again as far as the arm tilts. Raises
-    ``NotSettled`` and ``GuardRefused``: without a working guard nothing moves.
+    ``TareImplausible`` where that wrench is more than what hangs on the sensor, ``NotSettled`` and
+    ``GuardRefused``: without a working guard nothing moves.
     """
     guard = arm.guard
     # Frame and gravity compensation cannot be changed while armed.
@@ -41,6 +40,8 @@ async def guarded_section(arm: GuardedRobot, tolerance: WrenchTolerance) -> Asyn
         # be missing from the limit on one side.
         await settle(guard)
         tare = await guard.tare(TARE_S)
+        # What presses or pulls would be missing from the limits, and widen them besides.
+        require_hanging(arm, tare.mean)
         weight_n = float(np.linalg.norm(tare.mean[:3]))
     # The tare holds for one orientation. Tilted, the whole weight may appear in any direction, and
     # about the sensor on the lever of the load.
