@@ -3,6 +3,7 @@
 import asyncio
 import contextlib
 import socket
+import struct
 from collections import deque
 from collections.abc import Callable
 
@@ -14,6 +15,8 @@ from drivers.robot.siasun_rpc.codec.messages import MethodUnknown, Request, Valu
 
 LINGER_S = 0.2
 """Time for what was sent last to leave; it may be a stop."""
+_RESET_AT_CLOSE = struct.pack("ii", 1, 0)
+"""On, and not for a second: a connection that is closed is reset, and its buffer thrown away."""
 
 
 class RpcConnection(asyncio.Protocol):
@@ -21,12 +24,20 @@ class RpcConnection(asyncio.Protocol):
 
     Calls may be sent before earlier replies have come. A reply that is late, damaged or not asked
     for ends the connection: what follows it would be taken for the answer to something else.
-    ``on_lost`` hears of every end but ``close``.
+    ``on_lost`` hears of every end but ``close``. With ``dies_with_process`` the far end never gets
+    what the network has not taken yet when the connection or the process ends.
     """
 
-    def __init__(self, label: str, on_lost: Callable[[LinkError], None]) -> None:
+    def __init__(
+        self,
+        label: str,
+        on_lost: Callable[[LinkError], None],
+        *,
+        dies_with_process: bool = False,
+    ) -> None:
         self._label = label
         self._on_lost = on_lost
+        self._dies_with_process = dies_with_process
         self._reader = MessageReader()
         self._waiting: deque[tuple[str, asyncio.Future[Value]]] = deque()
         self._transport: asyncio.Transport | None = None
@@ -93,6 +104,9 @@ class RpcConnection(asyncio.Protocol):
         assert isinstance(transport, asyncio.Transport)
         connection: socket.socket = transport.get_extra_info("socket")
         connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if self._dies_with_process:
+            # Without it the system would go on sending for a dead process, for minutes.
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, _RESET_AT_CLOSE)
         self._transport = transport
 
     def data_received(self, data: bytes) -> None:

@@ -75,8 +75,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         Bounds(config.host, config).joint_target(joints_rad)
 
     async def connect(self) -> None:
-        """Open all connections and wait for a first state; with a dh table, ``VersionMismatch``
-        when the pose does not fit the joints. Idempotent."""
+        """Wait for a first state; ``VersionMismatch`` when by a dh table joints and pose differ."""
         async with self._connecting:
             await self._link.open()
             # An order of angles that is wrong is wrong in both directions: every pose comes back as
@@ -208,6 +207,7 @@ class SiasunRpcRobot(DescribedArm, StreamingRobot):
         self._check_link()
         # Remembered, so that a stop that comes during the release is not released with it.
         latch, timeout_s = self._latch, self._config.reply_timeout_s
+        await self._link.lapsed()
         await self._link.watch.stands(self._config.stop_timeout_s)
         report, _ = self._link.watch.newest(self._config.stale_s)
         if report.guard_stopped:

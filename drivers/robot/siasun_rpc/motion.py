@@ -53,7 +53,7 @@ class Motion:
         self.raise_end()
         # From here on nobody knows whether the arm moves, until the controller has said so.
         self.over = False
-        (task,) = await self._exchange(self._link.motion, call)
+        _, task, _ = await self._exchange(self._link.motion, *self._link.under_dead_man(call))
         self.task = cast(int, task)
         if self.task < 0:
             self.over = True

@@ -5,6 +5,7 @@ import contextlib
 from collections.abc import Callable, Coroutine
 from typing import cast
 
+from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.link import ConnectTimeout, LinkError, LinkLost
 from drivers.robot.siasun_rpc.codec.messages import MethodUnknown, Request, Value
@@ -21,6 +22,7 @@ _MOVES = frozenset({"movej", "movel"})
 """Calls that lead far. A setpoint of a stream leads no farther than one step, and is not waited
 for: a controller that answers none has the stream stopped."""
 VERSION = request("get_robot_version")
+_BEATS = frozenset({"rpc_heartbeat"})
 BEATS_PER_DEADMAN = 4
 """Heartbeats in the time after which the controller stops the arm: two in a row may be late."""
 RECONNECT_S = 0.3
@@ -38,6 +40,10 @@ class RpcLink:
     a third one the questions of ``watch``, a fourth one the heartbeats. A fault of any of them ends
     all: an arm of which one part is not known is not known. Before they are dropped a stop is sent,
     and they are opened again until ``close``; ``on_lost`` hears of each loss.
+
+    A move that the network holds back may reach the controller when this process is dead and the
+    guard's last stop is past. So ``motion`` has a dead man of its own, which each move brings along
+    (``under_dead_man``), and what of it is still in this PC dies with the process.
     """
 
     def __init__(
@@ -46,6 +52,10 @@ class RpcLink:
         self._robot = robot
         self._config = config
         self._on_lost = on_lost
+        self._heartbeat = request("rpc_heartbeat", config.heartbeat_ms)
+        self._lapse_s = 0.0
+        """When the controller has stopped the arm for the last connection that ended with its
+        heartbeats."""
         self.up = False
         self._wanted = False
         """True between ``open`` and ``close``: a session that is lost meanwhile is made again."""
@@ -71,14 +81,36 @@ class RpcLink:
     def _new_session(self) -> None:
         """Connections that nothing of an earlier session can reach: neither its late end nor a
         reply that comes after all."""
-        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
+        self.motion = self._motion_connection()
         self.control = RpcConnection(f"{self._robot} control", self.drop)
         self._asking = RpcConnection(f"{self._robot} state", self.drop)
         self._beating = RpcConnection(f"{self._robot} heartbeat", self.drop)
         self._frames = FrameStream(f"{self._robot} state stream", self.drop)
 
+    def _motion_connection(self) -> RpcConnection:
+        return RpcConnection(f"{self._robot} motion", self.drop, dies_with_process=True)
+
+    def under_dead_man(self, move: Request) -> tuple[Request, Request, Request]:
+        """A call that moves the arm between two heartbeats, to be sent in one piece.
+
+        The controller watches heartbeats for each connection by itself. Whenever this piece
+        arrives, it stops the arm ``heartbeat_ms`` later if nothing follows: the death of this
+        process bounds a move that it has not lived to see. Before and behind, so that the move has
+        a heartbeat with it wherever the network cuts the piece.
+        """
+        return self._heartbeat, move, self._heartbeat
+
+    async def lapsed(self) -> None:
+        """Wait until no connection that has ended can have the arm stopped any more: the stop
+        would hit the next motion. ``heartbeat_ms`` at most."""
+        await asyncio.sleep(max(0.0, self._lapse_s - now_s()))
+
+    def _lapse(self) -> None:
+        self._lapse_s = now_s() + self._config.heartbeat_ms / 1000.0
+
     async def _open(self) -> None:
         config = self._config
+        await self.lapsed()
         self._new_session()
         self.watch.follow(self._asking, self._frames)
         self._down = asyncio.get_running_loop().create_future()
@@ -173,6 +205,8 @@ class RpcLink:
         self._reopening = None
 
     def _hang_up(self) -> None:
+        if self.up:
+            self._lapse()
         self.up = False
         self._jobs.cancel()
         for one in (self.motion, self.control, self._asking, self._beating):
@@ -188,7 +222,8 @@ class RpcLink:
         self.motion.close()
         if not self.up:
             return
-        self.motion = RpcConnection(f"{self._robot} motion", self.drop)
+        self._lapse()
+        self.motion = self._motion_connection()
         try:
             async with asyncio.timeout(self._config.connect_timeout_s):
                 await self.motion.open(self._config.host, self._config.rpc_port)
@@ -242,9 +277,11 @@ class RpcLink:
 
     async def _beat(self) -> None:
         interval_s = self._config.heartbeat_ms / 1000.0 / BEATS_PER_DEADMAN
-        beat = request("rpc_heartbeat", self._config.heartbeat_ms)
         loop = asyncio.get_running_loop()
         while True:
             due_s = loop.time() + interval_s
-            await self._beating.exchange(beat, timeout_s=self._config.silence_s)
+            # Nobody waits for its reply: a controller that owes one is sent no other, and stops.
+            if not self.motion.owes(_BEATS):
+                self.motion.send(self._heartbeat)
+            await self._beating.exchange(self._heartbeat, timeout_s=self._config.silence_s)
             await asyncio.sleep(max(0.0, due_s - loop.time()))
