@@ -49,9 +49,9 @@ class Cell:
 
     def __init__(self, config: CellConfig, folder: Path, time_limits: TimeLimits = USUAL) -> None:
         """``folder`` holds the cell file."""
-        self.time_limits = time_limits
-        self.config = config
-        self.folder = folder
+        self.time_limits, self.config, self.folder = time_limits, config, folder
+        self.zero_folder: Path | None = None
+        """Where zeros of parts in their places outlive the process; the daemon sets it."""
         self.robot_notes = RobotNotes()
         self.run_notes = RunNotes()
         self.digital_ios = drivers_of(config, "digital_ios", PatientIo)
@@ -100,16 +100,14 @@ class Cell:
             self.config.robots[carrier],
         )
 
-    def guarded_robot(self, sensor_name: str) -> GuardedRobot:
-        """The robot that carries a force sensor; raises ``KeyError`` for an unknown sensor."""
-        sensor = self.config.force_sensors[sensor_name]
+    def guarded_robot(self, name: str) -> GuardedRobot:
+        """The robot that carries this force sensor; raises ``KeyError`` for an unknown one."""
+        sensor, folder = self.config.force_sensors[name], self.zero_folder
+        carrier, zero_file = sensor.mounted_on, folder and folder / f"{name}.json"
         return GuardedRobot(
-            self.robots[sensor.mounted_on],
-            self.config.robots[sensor.mounted_on],
-            sensor_name,
-            self.guards[sensor_name],
-            sensor,
-        )
+            self.robots[carrier], self.config.robots[carrier], name, self.guards[name], sensor,
+            zero_file,
+        )  # fmt: skip
 
     @contextmanager
     def trips_awaited(self, sensor_name: str) -> Iterator[None]:

@@ -1,6 +1,7 @@
 """A robot with the force sensor on its flange and the guard that watches it."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 from scipy.spatial.transform import RigidTransform
 
@@ -20,6 +21,8 @@ class GuardedRobot:
     """Name of the force sensor in the cell file; its guard has the same name."""
     guard: GuardClient
     sensor: ForceSensorConfig
+    zero_file: Path | None = None
+    """Where a zero that hides a part in its place is kept over a restart; None: nowhere."""
 
     @property
     def flange_T_sensor(self) -> RigidTransform:

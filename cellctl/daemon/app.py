@@ -91,7 +91,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         # The stack unwinds from its end: arms first, links next, and last of all the store, because
         # everything before it still writes down how it ended.
         stack.callback(store.close)
-        cell = Cell(config, cell_file.parent)
+        cell = _cell(config, cell_file.parent, data_dir)
         loop.add_signal_handler(signal.SIGHUP, tell, signal.SIGHUP)
         stack.callback(cell.workers.close)
         unit = UnitController(cell, store)
@@ -139,6 +139,13 @@ def _tidy_at_rest(background: Background, _before: State, after: State) -> None:
     if after in AT_REST:
         # Not in the loop, which beats for the guard and the line at rest, too.
         background.start(asyncio.to_thread(give_back_small_blocks))
+
+
+def _cell(config: CellConfig, folder: Path, data_dir: Path) -> Cell:
+    """The devices; what has to outlive a restart is kept beside the records."""
+    cell = Cell(config, folder)
+    cell.zero_folder = data_dir / "zeros"
+    return cell
 
 
 async def _command_path(

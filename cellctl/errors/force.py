@@ -170,6 +170,22 @@ class LiftOffHeld(ForceError):
     )
 
 
+class PartLeftInPlace(ForceError):
+    """An arm that has not left the place of a part, found at the next start."""
+
+    number = 531
+    text = "An arm was left in the place of its part"
+    cause = (
+        "Told at the start of the daemon: it ended after a Stop or a fault in contact, or with a "
+        "part that something holds (F529), before the arm had left."
+    )
+    remedy = (
+        "Look at arm and part as told; free a part that is held. Then Reset: with what pulls "
+        "already it pulls by the less, and at the whole pull not at all (F529)."
+    )
+    reaction = Reaction.WARN
+
+
 class PayloadFileInvalid(ForceError):
     """A file of poses and wrenches cannot be read."""
 

@@ -1,4 +1,5 @@
-"""Reports, after a start that found an interrupted run, where the arms stand and what they feel."""
+"""Reports, after a start that found an interrupted run or an arm that was left in the place of its
+part, where the arms stand and what they feel."""
 
 import asyncio
 from collections.abc import Iterable, Sequence
@@ -8,8 +9,11 @@ import numpy as np
 
 from cellctl import log
 from cellctl.cell.devices import Cell
+from cellctl.cell.guarded_motion.kept_zero import KeptZero, kept_zero, pressed_since
+from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.clock import now_s
 from cellctl.errors import CellError
+from cellctl.errors.force import PartLeftInPlace
 from cellctl.errors.records.store import RunInterrupted
 from cellctl.geometry.pose import pose_to_xyzabc
 from cellctl.records.async_store import AsyncRunStore
@@ -28,17 +32,22 @@ _POLL_S = 0.02
 """Pause between two looks at the newest sample."""
 
 
-async def interrupted_faults(
+async def faults_of_before(
     runs: Sequence[int],
     cell: Cell,
     processes: Iterable[Process[Any, Any, Any]],
     store: AsyncRunStore,
-) -> list[tuple[int, RunInterrupted]]:
-    """A fault for each interrupted run, with its number; moves nothing.
+) -> list[tuple[int | None, RunInterrupted | PartLeftInPlace]]:
+    """A fault for each interrupted run, with its number, and for each arm that was left in the
+    place of its part; moves nothing.
 
     What cannot be found out is said in its place, because a cell that does not come up for it would
     tell even less. Raises the faults of the run store.
     """
+    arms = [cell.guarded_robot(name) for name in cell.guards]
+    left = [(arm, kept) for arm in arms if (kept := await kept_zero(arm)) is not None]
+    if not runs and not left:
+        return []
     # First, because it has the guards subtract the weight and use the frame of the part: the forces
     # below are told as they are then.
     for process in processes:
@@ -47,12 +56,30 @@ async def interrupted_faults(
         except CellError as fault:
             _log.warning("contact force not shown", process=process.name, fault=str(fault))
     here = "; ".join([*_poses(cell), *[await _force(cell, name) for name in cell.guards]])
-    found = []
+    found: list[tuple[int | None, RunInterrupted | PartLeftInPlace]] = []
+    for arm, kept in left:
+        told = await _left(arm, kept)
+        found.append((None, PartLeftInPlace(f"{arm.sensor_name}: {told}; now {here}")))
     for run in runs:
         phases = (await store.do(RunStore.run, run)).phases
         step = f"step {phases[-1].number} {phases[-1].label}" if phases else "no step yet"
         found.append((run, RunInterrupted(f"run {run}, {step}; now {here}")))
     return found
+
+
+async def _left(arm: GuardedRobot, kept: KeptZero) -> str:
+    """What the part is pressed or pulled with, and whether something has held it."""
+    try:
+        force_n = await pressed_since(arm, kept)
+    except CellError as fault:
+        force = f"with what force is unknown ({fault})"
+    else:
+        if force_n is None:
+            force = "with what force is unknown"
+        else:
+            force = f"{'pulled' if force_n < 0.0 else 'pressed'} with {abs(force_n):.0f} N"
+    since = f"{force}, by the zero of {kept.taken:%Y-%m-%d %H:%M:%S} UTC"
+    return f"{since}; something held it: {kept.held}" if kept.held else since
 
 
 def _poses(cell: Cell) -> list[str]:

@@ -134,9 +134,10 @@ class Process(ProcessDefinition, Generic[P, R, S]):
         """Have the guards show the force on the part, as far as it is known; moves nothing.
 
         Without the weight of the payload, and in the frame of the part as in a run: the sensor's
-        own z may look the other way. Called once after a start that found an interrupted run, so
-        that the operator is told the force of the contact and not the weight of the part. Raises
-        the faults of calibrations, robot and guard; by default nothing is done.
+        own z may look the other way. Called once after a start that found an interrupted run, or an
+        arm in the place of a part, so that the operator is told the force of the contact and not
+        the weight of the part. Raises the faults of calibrations, robot and guard; by default
+        nothing is done.
         """
 
     @classmethod

@@ -24,7 +24,7 @@ from cellctl.records.entries import RunResult
 from cellctl.records.store import RunStore
 from cellctl.runtime.alarms import Alarms
 from cellctl.runtime.background import Background
-from cellctl.runtime.interrupted import interrupted_faults
+from cellctl.runtime.interrupted import faults_of_before
 from cellctl.runtime.invalidation import invalidate_after
 from cellctl.runtime.jobs.factory import JobFactory
 from cellctl.runtime.jobs.runner import JobRunner
@@ -76,8 +76,8 @@ class UnitController:
         )
         cell.pace.in_maintenance = lambda: self.machine.mode is Mode.MAINTENANCE
         self._ending = False
-        self._interrupted: list[int] = []
-        """Runs that an earlier process left open, as long as nobody was told of them."""
+        self._interrupted: list[int] | None = None
+        """Runs that an earlier process left open; None once somebody was told what it has left."""
         self.machine.on_change.append(self._changed)
         self.machine.on_fault.append(self._faulted)
         note_states(self.machine, self.board, cell.run_notes)
@@ -192,15 +192,15 @@ class UnitController:
         else:
             await reconnect({**self._cell.grippers, **self._cell.digital_ios})
         # Once the devices are there: before, nobody knows where an arm stands.
-        if self._interrupted:
+        if self._interrupted is not None:
             await self._tell_of(self._interrupted)
-            # Emptied last: a Clear that is cut short here has told nobody, and the next one does.
-            self._interrupted = []
+            # Last of all: a Clear that is cut short here has told nobody, and the next one does.
+            self._interrupted = None
 
     async def _tell_of(self, runs: list[int]) -> None:
         processes = self._processes.values()
-        for run, fault in await interrupted_faults(runs, self._cell, processes, self._store):
-            _log.warning("interrupted run", number=fault.number, fault=str(fault))
+        for run, fault in await faults_of_before(runs, self._cell, processes, self._store):
+            _log.warning("left from before", number=fault.number, fault=str(fault))
             self.alarms.add(fault, run)
 
     async def _resetting(self) -> None:

@@ -11,6 +11,7 @@ from cellctl.cell.contact_motion.ticks import NoObserver, TickObserver
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
 from cellctl.cell.guarded_motion.guarded_moves import TARE_S, WrenchTolerance
+from cellctl.cell.guarded_motion.kept_zero import Pressed, keep_zero
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.robot import StreamNotOffered
@@ -54,9 +55,12 @@ async def open_contact_loop(
         raise StreamNotOffered(f"{robot.name} follows no stream of setpoints")
     # Frame and tare cannot be changed while armed: the signal would jump against the limits.
     await guard.disarm()
-    await guard.set_wrench_frame(arm.flange_T_sensor.inv() * frames.flange_T_tip)
+    sensor_T_tip = arm.flange_T_sensor.inv() * frames.flange_T_tip
+    await guard.set_wrench_frame(sensor_T_tip)
     await settle(guard)
     tare = await guard.tare(TARE_S)
+    # Out of contact, with z of the tip into what it will touch: a restart knows its force by this.
+    await keep_zero(arm, sensor_T_tip, Pressed(inwards=1.0, force_n=0.0))
     tolerance = WrenchTolerance(settings.limit_n, settings.limit_n_m)
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))

@@ -14,6 +14,7 @@ from cellctl.cell.guarded_motion.guarded_moves import (
     leave_weight_to_tare,
 )
 from cellctl.cell.guarded_motion.hanging_load import LEVER_M, require_hanging
+from cellctl.cell.guarded_motion.kept_zero import forget_zero
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.geometry.pose import Array
@@ -47,6 +48,8 @@ async def guarded_section(arm: GuardedRobot, tolerance: WrenchTolerance) -> Asyn
     # about the sensor on the lever of the load.
     wider = WrenchTolerance(tolerance.force_n + weight_n, tolerance.moment_n_m + weight_n * LEVER_M)
     await guard.arm(guard_limits(wider.limits, Sensing.of(arm.sensor)))
+    # Whatever was in its place has left it.
+    await forget_zero(arm)
     # No disarming in a ``finally``: after a fault the arm may not stand yet, and the guard must go
     # on until the stop of the run.
     yield

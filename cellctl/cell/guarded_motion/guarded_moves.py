@@ -11,9 +11,11 @@ from scipy.spatial.transform import RigidTransform
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guard_limits import Sensing, guard_limits
 from cellctl.cell.guarded_motion.guard_port import GuardPort
+from cellctl.cell.guarded_motion.kept_zero import Pressed, keep_zero, note_held
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.base import CellError
+from cellctl.errors.force import ForceLimitExceeded
 from cellctl.errors.robot import MotionAborted, NotRearmed
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
 from cellctl.guard.client import GuardClient
@@ -58,7 +60,7 @@ async def guarded_moves(
     flange_T_wrench: RigidTransform,
     tolerance: WrenchTolerance,
     *,
-    hides_axial_n: float = 0.0,
+    leaves: Pressed | None = None,
 ) -> AsyncIterator[GuardedMove]:
     """Tare at standstill and arm the guard; yields a function that runs one guarded move.
 
@@ -66,8 +68,9 @@ async def guarded_moves(
     that is free changes nothing but inertia. ``flange_T_wrench`` is the frame in which the limits
     hold. A trip stops the robot and raises its fault, and the guard stays latched. A weight that
     is not subtracted is part of the zero: a move that turns it is one that changes the force. What
-    is pressed with is part of it too, along z with ``hides_axial_n`` as far as that is known.
-    Raises ``NotSettled``, ``GuardRefused`` and what the moves raise.
+    a part is pressed with that these moves take out of its place is part of it too: ``leaves``, as
+    far as that is known, which a restart does not forget. Raises ``NotSettled``, ``GuardRefused``
+    and what the moves raise.
     """
     guard = arm.guard
 
@@ -82,13 +85,22 @@ async def guarded_moves(
     # attempt still knows what the zero hides.
     await settle(guard)
     await leave_weight_to_tare(guard)
-    await guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_wrench)
-    await guard.tare(TARE_S, hides_axial_n=hides_axial_n)
+    sensor_T_wrench = arm.flange_T_sensor.inv() * flange_T_wrench
+    await guard.set_wrench_frame(sensor_T_wrench)
+    await guard.tare(TARE_S, hides_axial_n=0.0 if leaves is None else leaves.axial_n)
+    if leaves is not None:
+        # Before anything pulls: the daemon may be killed while it does.
+        await keep_zero(arm, sensor_T_wrench, leaves)
     with cell.trips_awaited(arm.sensor_name):
         await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))
         # After a fault the guard stays armed or latched: whoever handles the fault decides when
         # watching may end.
-        yield move
+        try:
+            yield move
+        except ForceLimitExceeded as fault:
+            if leaves is not None:
+                await note_held(arm, str(fault))
+            raise
         await guard.disarm()
 
 

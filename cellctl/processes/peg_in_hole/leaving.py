@@ -5,6 +5,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_motion.free_moves import move_joint_free
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.kept_zero import Pressed
 from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M
@@ -40,7 +41,7 @@ async def leave_hole(cell: PegCell) -> None:
     guard, press_n = cell.arm.guard, 0.0
     held = recipe_in_hole(cell)
     if held is not None:
-        press_n = await pressed_n(guard, _INWARDS, held.forces.insertion_n)
+        press_n = await pressed_n(cell.arm, _INWARDS, held.forces.insertion_n)
         # Before anything changes: what is pulled already must stay known.
         change_while_drawn_n(held.forces.withdrawal_n, press_n)
     # A run that was stopped has left it armed, and an armed guard takes no other load.
@@ -110,7 +111,6 @@ async def _out_of(cell: PegCell, recipe: PegRecipe, press_n: float) -> None:
     pull_n = recipe.forces.withdrawal_n
     change_n = change_while_drawn_n(pull_n, press_n)
     pull = WrenchTolerance(pull_n, _TWIST_N_M, axial_n=change_n)
-    hidden_n = -_INWARDS * press_n
     held_m = change_n / cell.settings.stiffness_n_mm * MM
     first_m = max(FIRST_LIFT_M, _FIRST_RATIO * held_m)
     stretches = [(min(first_m, missing_m), _FIRST_M_S)]
@@ -118,7 +118,7 @@ async def _out_of(cell: PegCell, recipe: PegRecipe, press_n: float) -> None:
         stretches.append((missing_m, _SLOW_M_S))
     try:
         async with guarded_moves(
-            cell.cell, cell.arm, wrench_frame, pull, hides_axial_n=hidden_n
+            cell.cell, cell.arm, wrench_frame, pull, leaves=Pressed(_INWARDS, press_n)
         ) as move:
             for height_m, speed_m_s in stretches:
                 target = RigidTransform.from_translation(height_m * up) * here

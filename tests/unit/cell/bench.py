@@ -144,6 +144,7 @@ class CellInMemory:
         self.pace = MaintenancePace()
         self.time_limits = TimeLimits()
         self.connected = True
+        self.zero_folder: Path | None = None
         self.unanswered: dict[str, CellError] = {}
         self.unstopped: dict[str, BaseException] = {}
         self._awaited_trips: set[str] = set()

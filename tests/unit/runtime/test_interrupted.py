@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cellctl.errors.force import LiftOffHeld
+from cellctl.errors.force import LiftOffHeld, PartLeftInPlace
 from cellctl.errors.link import StaleData
 from cellctl.errors.records.store import RecordNotWritten, RunInterrupted
 from cellctl.geometry.pose import pose_from_xyzabc
@@ -166,3 +166,48 @@ async def test_a_restart_does_not_forget_a_pull_where_the_payload_is_known(
         guard.hidden_axial_n = None
         guard.in_part_frame = guard.gravity_compensated = False
         await died.restart()
+
+
+async def test_a_start_tells_of_an_arm_that_a_held_part_has_kept_in_its_place(
+    died: DaemonRig, tmp_path: Path
+) -> None:
+    bench, guard = died.bench, died.bench.cell.guard
+    bench.cell.zero_folder = tmp_path / "zeros"
+    await died.open()
+    noisy(guard)
+    guard.trip = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -50.3 N, limit 50.00 N", 2, -50.3)
+    bench.cell.main.road_is_free = asyncio.Event()
+    bench.cell.main.on_the_way.clear()
+    guard_acknowledge = guard.acknowledge
+
+    async def stays_tripped() -> None:
+        trip = guard.trip
+        await guard_acknowledge()
+        guard.trip = trip
+
+    guard.acknowledge = stays_tripped  # type: ignore[method-assign]
+    assert await died.take(Command.RESET) is RejectCode.NONE
+    await died.until(lambda: bench.cell.main.stops > 0)
+    bench.cell.main.road_is_free.set()
+    await died.to(State.ABORTED)
+    guard.trip, moves = None, len(bench.cell.main.moves)
+    await died.restart()
+    (told,) = [one for one in died.unit.alarms.active if one.number == PartLeftInPlace.number]
+    x_mm, y_mm, z_mm = bench.cell.main.flange.translation * 1e3
+    assert f"main at {x_mm:.1f} {y_mm:.1f} {z_mm:.1f} mm" in told.text
+    assert "force: pressed with " in told.text
+    assert "something held it: " in told.text
+    assert "Fz -50.3 N" in told.text
+    assert "now main at" in told.text
+    assert len(bench.cell.main.moves) == moves
+
+
+async def test_a_start_after_the_arm_has_left_tells_nothing(
+    died: DaemonRig, tmp_path: Path
+) -> None:
+    died.bench.cell.zero_folder = tmp_path / "zeros"
+    await died.open()
+    noisy(died.bench.cell.guard)
+    await died.idle()
+    await died.restart()
+    assert PartLeftInPlace.number not in died.unit.alarms.numbers

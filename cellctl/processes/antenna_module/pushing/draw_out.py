@@ -4,6 +4,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
+from cellctl.cell.guarded_motion.kept_zero import Pressed
 from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.geometry.pose import MM, pose_from_xyzabc
@@ -43,14 +44,14 @@ async def draw_out(cell: AntennaCell, recipe: AntennaRecipe) -> None:
     inwards = (here * flange_T_plug).rotation.apply([0.0, 0.0, 1.0])
     target = RigidTransform.from_translation(-way_m * inwards) * here
     socket = read_connector(cell.cell.folder / recipe.socket)
-    press_n = await pressed_n(cell.arm.guard, _INWARDS, _most_pressed_n(recipe, socket, here))
+    press_n = await pressed_n(cell.arm, _INWARDS, _most_pressed_n(recipe, socket, here))
     try:
         async with guarded_moves(
             cell.cell,
             cell.arm,
             flange_T_plug * MATED_TURN,
             _tolerance(socket, press_n),
-            hides_axial_n=-_INWARDS * press_n,
+            leaves=Pressed(_INWARDS, press_n),
         ) as move:
             await move(
                 cell.arm.robot.move_linear(

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cellctl.cell.guarded_motion.kept_zero import Pressed, keep_zero
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
 from cellctl.errors.force import TareImplausible
@@ -62,7 +63,8 @@ async def _tare(planned: Planned) -> None:
     await arm.guard.disarm()
     socket = planned.run.drawings.socket
     flange_T_plug = planned.flange_T_connector * connector_T_plug(socket)
-    await arm.guard.set_wrench_frame(arm.flange_T_sensor.inv() * flange_T_plug)
+    sensor_T_plug = arm.flange_T_sensor.inv() * flange_T_plug
+    await arm.guard.set_wrench_frame(sensor_T_plug)
     await settle(arm.guard)
     await arm.guard.tare(_TARE_S)
     # What is taken as zero is not seen any more: a plug that touches already would begin with a
@@ -73,3 +75,4 @@ async def _tare(planned: Planned) -> None:
         raise TareImplausible(
             f"{changed_n:.1f} N more or less than over the tray, allowed {_TOUCH_N:g} N"
         )
+    await keep_zero(arm, sensor_T_plug, Pressed(inwards=-1.0, force_n=0.0))

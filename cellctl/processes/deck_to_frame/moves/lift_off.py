@@ -6,7 +6,8 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
 from cellctl.cell.guarded_motion.guarded_moves import GuardedMove, WrenchTolerance, guarded_moves
-from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, newest_raw, pressed_n
+from cellctl.cell.guarded_motion.kept_zero import Pressed, forget_zero, newest_raw
+from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
 from cellctl.config.devices import ForceSensorConfig
 from cellctl.errors.force import ForceLimitExceeded, LiftOffHeld
 from cellctl.force.contact.leaving import FIRST_LIFT_M, leaving_speed_m_s
@@ -59,18 +60,21 @@ async def lift_off(cell: DeckCell, payload: GravityCompensation | None = None) -
     guarded = partial(guarded_moves, cell.cell, cell.arm, flange_T_deck)
     # Before the tare hides it.
     most_n = await _most_pressed_n(cell, recipe, payload)
-    press_n = await pressed_n(cell.arm.guard, _INWARDS, most_n)
+    press_n = await pressed_n(cell.arm, _INWARDS, most_n)
     try:
-        async with guarded(_tolerance(mating, press_n), hides_axial_n=-_INWARDS * press_n) as move:
+        pressed = Pressed(_INWARDS, press_n)
+        async with guarded(_tolerance(mating, press_n), leaves=pressed) as move:
             first_m_s = first_lift_speed_m_s(mating, cell.force_config)
             above = _above(base_T_flange, FIRST_LIFT_M * away)
             await move(cell.main.step(above, speed_m_s=first_m_s))
         # From a new zero: the first one was taken while the deck was pressed on the frame, so that
         # what is felt of a free deck is that force, and acceleration would come on top of it.
         # A deck that something yielding holds is pulled by then, not yet by enough to be noticed.
-        held_n = min(0.0, await pressed_n(cell.arm.guard, _INWARDS, mating.limit_force_n))
-        async with guarded(_tolerance(mating, held_n), hides_axial_n=-_INWARDS * held_n) as move:
+        held_n = min(0.0, await pressed_n(cell.arm, _INWARDS, mating.limit_force_n))
+        pulled = Pressed(_INWARDS, held_n)
+        async with guarded(_tolerance(mating, held_n), leaves=pulled) as move:
             await _rise(cell, mating, base_T_flange, away, move)
+        await forget_zero(cell.arm)
     except ForceLimitExceeded as fault:
         raise LiftOffHeld(fault.detail) from fault
 

@@ -2,6 +2,8 @@
 
 import asyncio
 from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import cast
 
@@ -13,6 +15,7 @@ from cellctl.cell.contact_motion.opening import streamed_contact, watch_closer
 from cellctl.cell.contact_motion.settings import ContactSettings
 from cellctl.cell.devices import Cell
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance
+from cellctl.cell.guarded_motion.kept_zero import KeptZero, Pressed, kept_zero
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.robot import StreamNotOffered
 from cellctl.errors.streamed_contact import LoopTooSlow, LoopUnstable
@@ -63,6 +66,21 @@ def test_the_guard_is_tared_in_the_frame_of_the_tip_and_armed_as_long_as_the_str
     assert guard.asked == ["disarm", "set_wrench_frame", "tare", "arm", "arm", "disarm"]
     assert [limits.filtered[0] for limits in guard.limits] == [50.0, 10.0]
     assert not guard.armed
+
+
+def test_the_zero_out_of_contact_outlives_the_daemon(tmp_path: Path) -> None:
+    async def zero_of_a_loop() -> KeptZero | None:
+        robot, guard = InProcessStreamingRobot("main"), TinyGuard()
+        cell, arm = arm_of(robot, guard)
+        arm = replace(arm, zero_file=tmp_path / "force.json")
+        await robot.connect()
+        async with streamed_contact(cell, arm, FRAMES, settings(), OFFER.limits):
+            pass
+        return await kept_zero(arm)
+
+    kept = asyncio.run(zero_of_a_loop())
+    assert kept is not None
+    assert kept.pressed == Pressed(inwards=1.0, force_n=0.0)
 
 
 def test_a_robot_without_a_stream_is_told() -> None:

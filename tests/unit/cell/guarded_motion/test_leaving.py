@@ -1,13 +1,14 @@
 """How hard an arm presses on what it leaves, and what change of force that allows."""
 
+from types import SimpleNamespace
 from typing import cast
 
 import numpy as np
 import pytest
 
 from cellctl.cell.guarded_motion.leaving import change_while_drawn_n, pressed_n
+from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.errors.force import LiftOffHeld
-from cellctl.guard.client import GuardClient
 from tests.unit.cell.guard import TinyGuard
 
 MOST_N = 50.0
@@ -16,7 +17,8 @@ MOST_N = 50.0
 async def pressed(told_n: float, hidden_n: float | None, inwards: float = 1.0) -> float:
     guard = TinyGuard(hidden_axial_n=hidden_n)
     guard.raw = np.tile([3.0, -3.0, told_n, 0.1, 0.1, 0.0], (50, 1))
-    return await pressed_n(cast(GuardClient, guard), inwards, MOST_N)
+    arm = cast(GuardedRobot, SimpleNamespace(guard=guard, zero_file=None))
+    return await pressed_n(arm, inwards, MOST_N)
 
 
 @pytest.mark.parametrize(

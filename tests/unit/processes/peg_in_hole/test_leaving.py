@@ -2,6 +2,7 @@
 
 from contextlib import nullcontext
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -57,14 +58,19 @@ def flange_at(depth_mm: float, x_mm: float = 0.0) -> RigidTransform:
 
 
 def left_at(
-    depth_mm: float, x_mm: float = 0.0, config: Any = CELL, stiffness_n_mm: float | None = None
+    depth_mm: float,
+    x_mm: float = 0.0,
+    config: Any = CELL,
+    *,
+    stiffness_n_mm: float | None = None,
+    zero_file: Path | None = None,
 ) -> tuple[PegCell, StillRobot, NewGuard]:
     guard = NewGuard()
     robot = StillRobot("arm", flange=flange_at(depth_mm, x_mm), watched_by=guard)
     (sensor,) = CELL.force_sensors
     arm = GuardedRobot(
         cast(Robot, robot), CELL.robots[CELL.force_sensors[sensor].mounted_on], sensor,
-        cast(GuardClient, guard), CELL.force_sensors[sensor],
+        cast(GuardClient, guard), CELL.force_sensors[sensor], zero_file,
     )  # fmt: skip
     cell: Any = SimpleNamespace(config=config, trips_awaited=lambda _: nullcontext())
     settings = CELL.processes["peg-in-hole"]
@@ -131,6 +137,55 @@ async def test_a_peg_that_holds_a_full_pull_is_not_pulled_again() -> None:
         with pytest.raises(LiftOffHeld, match="pulled with 21 N already, allowed 20 N"):
             await leave_hole(cell)
     assert robot.moves == []
+
+
+def feels(cell: PegCell, guard: NewGuard, along_z_n: float) -> None:
+    """The true force along z of the tip, beside what the sensor reads of its load."""
+    (recipe,) = peg_recipes(CELL)
+    sensor_T_tip = cell.arm.flange_T_sensor.inv() * pose_from_xyzabc(recipe.flange_T_tip)
+    force_n = sensor_T_tip.rotation.apply([0.0, 0.0, along_z_n]) + np.array([1.0, 2.0, -11.0])
+    noise = np.random.default_rng(1).normal(0.0, 0.01, (200, 6))
+    guard.raw = noise + np.concatenate([force_n, np.zeros(3)])
+
+
+async def test_a_restart_does_not_forget_how_hard_the_peg_is_pulled(tmp_path: Path) -> None:
+    (recipe,) = peg_recipes(CELL)
+    pull_n, most_n = recipe.forces.withdrawal_n, recipe.forces.insertion_n
+    zero_file = tmp_path / "force.json"
+    cell, robot, guard = left_at(5.0, zero_file=zero_file)
+    feels(cell, guard, -most_n)
+    guard.trip = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz 51.0 N, limit 50.00 N", 2, 51.0)
+    with pytest.raises(LiftOffHeld):
+        await leave_hole(cell)
+    for _ in range(2):
+        cell, robot, guard = left_at(5.0, zero_file=zero_file)
+        feels(cell, guard, pull_n)
+        with pytest.raises(LiftOffHeld, match=f"pulled with {pull_n:.0f} N already"):
+            await leave_hole(cell)
+        assert robot.moves == []
+    # Somebody has freed it.
+    cell, robot, guard = left_at(5.0, zero_file=zero_file)
+    feels(cell, guard, 0.0)
+    await leave_hole(cell)
+    assert [move.kind for move in robot.moves] == ["linear", "linear", "joint"]
+    assert guard.limits[0].filtered[2] == pytest.approx(pull_n, abs=0.1)
+    assert not zero_file.exists()
+
+
+async def test_a_daemon_that_is_killed_while_it_pulls_has_kept_what_it_knew(
+    tmp_path: Path,
+) -> None:
+    (recipe,) = peg_recipes(CELL)
+    zero_file = tmp_path / "force.json"
+    cell, robot, guard = left_at(5.0, zero_file=zero_file)
+    feels(cell, guard, -recipe.forces.insertion_n)
+    robot.faults["move"] = MotionRejected("killed here")
+    with pytest.raises(MotionRejected):
+        await leave_hole(cell)
+    cell, robot, guard = left_at(5.0, zero_file=zero_file)
+    feels(cell, guard, 12.0)
+    await leave_hole(cell)
+    assert guard.limits[0].filtered[2] == pytest.approx(recipe.forces.withdrawal_n - 12.0, abs=0.1)
 
 
 async def test_a_part_that_is_held_is_told_as_one_and_stays_where_it_is() -> None:

@@ -56,7 +56,12 @@ class WithZero(TinyGuard):
     def samples(self, since_s: float) -> GuardSamples:
         told_n = np.array([0.0, 0.0, self.true_n - self.zero_n, 0.0, 0.0, 0.0])
         samples = super().samples(since_s)
-        return replace(samples, wrench=samples.wrench * 0.05 + told_n)
+        noise = samples.wrench * 0.05
+        # A sensor reads its load as well, and in its own axes.
+        frame = pose_from_xyzabc(recipe().flange_T_plug) * MATED_TURN
+        force_n = frame.rotation.apply([0.0, 0.0, self.true_n]) + np.array([1.0, 2.0, -15.0])
+        raw = noise + np.concatenate([force_n, np.zeros(3)])
+        return replace(samples, wrench=noise + told_n, raw=raw)
 
     async def tare(self, duration_s: float, *, hides_axial_n: float = 0.0) -> TareResult:
         self.zero_n = self.true_n
@@ -70,6 +75,7 @@ class Left:
     flange: RigidTransform
     restarted: bool = False
     guard: WithZero = field(default_factory=WithZero)
+    zero_file: Path | None = None
 
     def __post_init__(self) -> None:
         self.robot = StillRobot("arm", flange=self.flange, watched_by=self.guard)
@@ -80,6 +86,7 @@ class Left:
         arm = SimpleNamespace(
             robot=self.robot, guard=self.guard, sensor_name="force",
             sensor=CELL.force_sensors["force"], flange_T_sensor=RigidTransform.identity(),
+            zero_file=self.zero_file,
         )  # fmt: skip
         cell: Any = SimpleNamespace(
             config=CELL, folder=CONFIG, trips_awaited=lambda _: nullcontext()
@@ -157,6 +164,26 @@ async def test_a_plug_that_holds_a_full_pull_is_not_pulled_again() -> None:
         await left.drawn()
     assert len(left.guard.limits) == armed
     assert left.robot.moves == []
+
+
+async def test_a_restart_does_not_forget_how_hard_the_plug_is_pulled(tmp_path: Path) -> None:
+    held = Left(flange_at(2.5), zero_file=tmp_path / "force.json")
+    held.guard.trip = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -99.0 N", 2, -99.0)
+    with pytest.raises(LiftOffHeld):
+        await held.drawn()
+    pull_n = MAY_NEED_N + 2.0
+    for restarts in range(1, 3):
+        left = Left(flange_at(2.5), restarted=True, zero_file=held.zero_file)
+        left.guard.true_n = -pull_n
+        with pytest.raises(LiftOffHeld, match=rf"pulled with {pull_n:.0f} N already"):
+            await left.drawn()
+        assert left.robot.moves == [], f"restart {restarts}"
+    # Somebody has freed it half, in the next one wholly.
+    for left_n in (-30.0, 0.0):
+        left = Left(flange_at(2.5), restarted=True, zero_file=held.zero_file)
+        left.guard.true_n = left_n
+        await left.stopped_on_the_way(left_n)
+        assert left.limits.filtered[2] == pytest.approx(MAY_NEED_N + left_n, abs=0.5)
 
 
 @pytest.mark.parametrize(("depth_mm", "pressed_n"), [(0.2, 13.0), (0.9, 51.7), (2.5, 51.7)])

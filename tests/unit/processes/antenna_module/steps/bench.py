@@ -113,6 +113,7 @@ class Bench:
             guard=self.guard,
             sensor_name="force",
             flange_T_sensor=pose_from_xyzabc((0.0, 0.0, 30.0, 0.0, 0.0, 0.0)),
+            zero_file=None,
         )
         cell = SimpleNamespace(
             arm=arm,

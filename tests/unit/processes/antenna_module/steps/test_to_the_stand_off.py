@@ -1,11 +1,13 @@
 """Steps 20 to 70 one after the other: the module found, picked, looked at, and over its socket."""
 
 import importlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.cell.guarded_motion.kept_zero import Pressed, kept_zero
 from cellctl.errors.force import TareImplausible
 from cellctl.errors.gripper import PartLost
 from cellctl.geometry.pose import MM, pose_error
@@ -144,6 +146,20 @@ async def test_over_the_socket_by_the_free_way_and_tared_there(bench: Bench) -> 
     )
     assert bench.events[-2:] == ["slowly", "part?"]
     assert bench.guard.asked[-3:] == ["disarm", "set_wrench_frame", "tare"]
+
+
+async def test_the_zero_over_the_socket_outlives_the_daemon(bench: Bench, tmp_path: Path) -> None:
+    done = await planned(bench)
+    arm = done.run.cell.arm
+    arm.zero_file = tmp_path / "force.json"  # type: ignore[misc]
+    bench.guard.serial = "M4347K-7"
+    await over.stand_off(done)
+    kept = await kept_zero(arm)
+    assert kept is not None
+    assert (kept.serial, kept.pressed) == ("M4347K-7", Pressed(inwards=-1.0, force_n=0.0))
+    base_T_sensor = bench.visited[-1] * arm.flange_T_sensor
+    outwards = base_T_sensor.rotation.apply(kept.sensor_z)
+    np.testing.assert_allclose(outwards, [0.0, 0.0, 1.0], atol=0.02)
 
 
 async def test_a_module_that_was_lost_on_the_way_is_told_before_any_contact(bench: Bench) -> None:
