@@ -107,8 +107,7 @@ class UnitController:
         if self._interrupted:
             _log.warning("an earlier process left runs open", runs=self._interrupted)
         await self.alarms.open()
-        for newest in await self._store.do(RunStore.runs, limit=1):
-            self._jobs.recall(newest)
+        await self._jobs.recall(self._store)
         # Parts are counted since installation, and only the records know that.
         self.parts = await self._store.do(RunStore.good_parts)
 

@@ -20,9 +20,13 @@ from cellctl.workers import VisionWorkers
 
 @dataclass(slots=True)
 class FrameMemory:
-    """The frame as it was measured last: only for leaving the station straight."""
+    """What the last run knew of the station: only for leaving it straight and no harder than its
+    recipe allows."""
 
     base_T_frame: RigidTransform | None = None
+    """The frame as it was measured last."""
+    recipe_id: int | None = None
+    """Whose deck the arm has carried since; None after a restart."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,10 @@ from cellctl.errors import CellError
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.records.store import RecordSilent
 from cellctl.packml.result import Result
-from cellctl.records.entries import RunHead, RunResult
+from cellctl.records.async_store import AsyncRunStore
+from cellctl.records.entries import RunResult
+from cellctl.records.run_filter import AlarmFilter
+from cellctl.records.store import RunStore
 from cellctl.runtime.jobs.job import Job
 
 _log = log.get(__name__)
@@ -78,14 +81,20 @@ class JobRunner:
         unrecorded = newest is not None and not (newest.run_number or self._begun)
         return self._before if unrecorded else (newest, self.result)
 
-    def recall(self, head: RunHead) -> None:
+    async def recall(self, store: AsyncRunStore) -> None:
         """Show the last run before this start, until there is another one.
 
-        A PLC that was waiting for the end of a run when the daemon died reads it here.
+        A PLC that was waiting for the end of a run when the daemon died reads it here. Raises the
+        faults of the store.
         """
-        self._newest = EarlierRun(head.recipe_id, head.serial, head.number)
-        result = head.result
-        self.result = Result.NONE if result is None else _RESULT_FOR_LINE[RunResult(result)]
+        for head in await store.do(RunStore.runs, limit=1):
+            self._newest = EarlierRun(head.recipe_id, head.serial, head.number)
+            result = head.result
+            self.result = Result.NONE if result is None else _RESULT_FOR_LINE[RunResult(result)]
+            silent = AlarmFilter(number=RecordSilent.number, run=head.number)
+            if await store.do(RunStore.alarm_count, silent):
+                # The record was closed after the line had been told that it was not.
+                self.result = Result.ABORTED
 
     @property
     def run_number(self) -> int | None:

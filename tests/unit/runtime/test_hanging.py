@@ -87,6 +87,8 @@ async def test_a_disk_that_hangs_when_the_run_is_closed(
     disk.answer()
     assert (await rig.record()).head.result == "good", "the part itself was"
     assert rig.shown().run_result is Result.ABORTED, "what the line was told stays"
+    await rig.restart()
+    assert rig.shown().run_result is Result.ABORTED, "over a restart, too"
 
 
 async def test_a_disk_that_hangs_when_the_run_is_opened(

@@ -148,11 +148,18 @@ def first_lift_speed_m_s(mating: Mating, force: ForceSensorConfig) -> float:
 
 
 def recipe_below(cell: DeckCell, base_T_flange: RigidTransform) -> DeckRecipe | None:
-    """The first recipe whose deck on the flange would be low over its frame."""
-    for recipe in cell.recipes:
-        if _is_low(recipe, _frame_T_deck(recipe, base_T_flange), LOW_M):
-            return recipe
-    return None
+    """The recipe whose deck on the flange would be low over its frame.
+
+    Where those of several would be, that of the last run; after a restart, when nobody knows which
+    that was, the one that allows the least force.
+    """
+    low = [
+        recipe
+        for recipe in cell.recipes
+        if _is_low(recipe, _frame_T_deck(recipe, base_T_flange), LOW_M)
+    ]
+    last = next((recipe for recipe in low if recipe.id == cell.memory.recipe_id), None)
+    return last or min(low, key=lambda recipe: recipe.mating.limit_force_n, default=None)
 
 
 def _frame_T_deck(recipe: DeckRecipe, base_T_flange: RigidTransform) -> RigidTransform:

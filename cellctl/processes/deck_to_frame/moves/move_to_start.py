@@ -19,6 +19,8 @@ async def move_to_start(opened: OpenRun) -> Ready:
     # The main robot first: home is clear of the heads wherever they stand, but a head on its way to
     # its measuring pose may meet a deck that is low over the station.
     await main_to_home(cell)
+    # Only now: what the arm may have stood in until here was left by the run before.
+    cell.memory.recipe_id = facts.recipe.id
     await heads_to_measuring_poses(cell)
     settings = facts.recipe.pose_correction
     heads = HeadGeometry.of(facts.geometry, settings)

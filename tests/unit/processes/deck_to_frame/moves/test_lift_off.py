@@ -2,10 +2,13 @@
 
 import asyncio
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 
+from cellctl.cell.lighting.auto_exposure import RunExposures
 from cellctl.daemon.supervision import LinkMonitor
 from cellctl.errors.force import LiftOffHeld, NotSettled
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
@@ -15,10 +18,25 @@ from cellctl.packml.reject import RejectCode
 from cellctl.packml.state import State
 from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 from cellctl.processes.deck_to_frame.moves.lift_off import lift_off
+from cellctl.processes.deck_to_frame.moves.move_to_start import move_to_start
+from cellctl.processes.deck_to_frame.recipe import DeckRecipe
+from cellctl.processes.deck_to_frame.run import OpenRun
+from cellctl.records.run_recorder import RunRecorder
+from cellctl.runtime.progress import ProgressBoard
 from tests.unit.cell.bench import Bench
 from tests.unit.daemon_rig import DaemonRig
 
 HELD = GuardTrip(TripReason.FILTERED_LIMIT, 1.0, "Fz -50.30 N, limit 50.00 N", 2, -50.3)
+
+
+def opened(bench: Bench, recipe: DeckRecipe) -> OpenRun:
+    """A run that goes to its beginning, and does not come to be recorded."""
+    found: Any = SimpleNamespace(
+        facts=bench.facts(recipe=recipe),
+        board=ProgressBoard(),
+        exposures=RunExposures(bench.as_cell, cast(RunRecorder, None)),
+    )
+    return cast(OpenRun, found)
 
 
 async def reset_while_it_is_held(daemon_rig: DaemonRig) -> None:
@@ -74,6 +92,28 @@ async def test_a_deck_that_is_pulled_already_is_pulled_by_the_less(
     assert bench.recipe.mating.limit_force_n == 50.0
     assert first.filtered[2] == pytest.approx(may_n, abs=0.1)
     assert second.filtered[2] == pytest.approx(50.0, abs=0.1)
+
+
+@pytest.mark.parametrize(
+    ("ran", "may_n"), [(1, 50.0), (2, 20.0), (None, 20.0)], ids=["", "", "after a restart"]
+)
+async def test_a_deck_is_pulled_no_harder_than_its_own_recipe_allows(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch, ran: int | None, may_n: float
+) -> None:
+    """Two products go to one station, and the harder one stands first in the cell file."""
+    hard = bench.recipe
+    mating = hard.mating.model_copy(update={"limit_force_n": 20.0})
+    delicate = hard.model_copy(update={"id": 2, "mating": mating})
+    both = bench.cell.config.model_copy(update={"recipes": (hard, delicate)})
+    monkeypatch.setattr(bench.cell, "config", both)
+    assert (hard.id, hard.mating.limit_force_n) == (1, 50.0)
+    if ran is not None:
+        recipe = cast(DeckRecipe, both.recipes[ran - 1])
+        await move_to_start(opened(bench, recipe))
+    bench.cell.guard.limits.clear()
+    bench.cell.main.flange = bench.flange_over_seat(0.0)
+    await lift_off(bench.deck)
+    assert [limits.filtered[0] for limits in bench.cell.guard.limits[:2]] == [may_n, may_n]
 
 
 @pytest.mark.parametrize("hidden_n", [0.0, None], ids=["", "after a restart"])
