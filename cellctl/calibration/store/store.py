@@ -135,6 +135,11 @@ class CalibrationStore:
         """
         return next(iter(self._mark([kind.name], reason)), None)
 
+    def require_not_invalidated(self, names: Iterable[str]) -> None:
+        """Raise ``CalibrationInvalidated`` for the first of these that has been invalidated."""
+        for name in names:
+            require_not_invalidated(self.path, name)
+
     def put_aside(
         self, kind: CalibrationKind[Any], record: Mapping[str, Any], picture_png: bytes | None
     ) -> Path:

@@ -38,7 +38,7 @@ def invalidate(
 ) -> None:
     """Production refuses to start until the calibration NAME has been made anew.
 
-    Also for a cell that is running: it looks before every start.
+    Also for a cell that is running: it looks before every start, and before a part is good.
     """
     # The reason is all that an operator will later see of this decision.
     if not reason.strip():

@@ -1,5 +1,6 @@
 """A run in Production: one part, made by the steps of a process."""
 
+import asyncio
 from typing import Any
 
 from cellctl import log
@@ -115,6 +116,7 @@ class ProductionJob(Job):
                 state = await self._process.begin(run)
             else:
                 await self._require_figures_within()
+                await self._require_still_valid()
                 return
 
     async def _require_as_prepared(self) -> None:
@@ -138,6 +140,15 @@ class ProductionJob(Job):
             raise FigureBeyondLimit(", ".join(f"{one.label} {one.value}" for one in beyond))
         if lacking := missing_figures(record):
             raise FigureBeyondLimit(", ".join(f"{one.label} {NOT_MEASURED}" for one in lacking))
+
+    async def _require_still_valid(self) -> None:
+        """Raise ``CalibrationInvalidated`` where somebody has withdrawn a calibration meanwhile.
+
+        Its marker is written beside a running cell, and what was wrong with it has been so in this
+        run already.
+        """
+        calibrations = self._process.services.calibrations
+        await asyncio.to_thread(calibrations.require_not_invalidated, self._stored)
 
     async def close(self, outcome: RunResult, fault: CellError | None) -> RunResult:
         """Close the run record; nothing to close when it could not be opened."""

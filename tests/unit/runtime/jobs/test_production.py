@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cellctl.calibration.store.store import CalibrationStore
 from cellctl.daemon.disk_watch import DiskWatch
-from cellctl.errors.calibration import CalibrationNotStored
+from cellctl.errors.calibration import CalibrationInvalidated, CalibrationNotStored
 from cellctl.errors.force import GuardDied
 from cellctl.errors.line import LineLostInContact
 from cellctl.errors.link import LinkLost
@@ -71,6 +72,24 @@ async def test_a_good_part(rig: DaemonRig) -> None:
     assert status.cycle_counter == 1
     assert status.step == 0
     assert not status.error
+
+
+async def test_a_part_is_not_good_by_a_calibration_that_is_withdrawn_meanwhile(
+    rig: DaemonRig,
+) -> None:
+    rig.contact.may_end.clear()
+    seq = await rig.started()
+    await rig.contact.reached.wait()
+    # As `cellctl calibrate invalidate` does it beside the daemon.
+    known = rig.unit.calibrations
+    beside = CalibrationStore(known.path, known.kinds)
+    beside.invalidate([beside.named("head_1")], "a fork lift has met it")
+    rig.contact.may_end.set()
+    await rig.to(State.STOPPED)
+    assert rig.port.ended[seq] is Result.STOPPED
+    head = (await rig.record()).head
+    assert (head.result, head.fault_number) == ("stopped", CalibrationInvalidated.number)
+    assert "fork lift" in (head.fault or "")
 
 
 async def test_a_figure_beyond_its_limit_is_no_good_part(
