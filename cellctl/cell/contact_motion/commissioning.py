@@ -122,8 +122,8 @@ async def commission_contact(
 class _Swing:
     """What was sent along z, when, and what followed; an entry for each of n setpoints.
 
-    Pose, force and setpoint have times of their own: on a busy PC they lie apart by far more than
-    they would have to, and otherwise at every tick.
+    Pose, force and setpoint each have a time of their own: on a busy PC they are further apart than
+    they need to be, and by a different amount at every tick.
     """
 
     samples: list[ContactSample]
@@ -133,7 +133,7 @@ class _Swing:
     force_s: Array
     """When the forces of the samples were measured."""
     used_s: Array
-    """Age, when a setpoint went out, of the newest force that it could follow from."""
+    """Age of the newest force that a setpoint could take into account, at the time it went out."""
 
 
 class _Commissioning:
@@ -167,8 +167,10 @@ class _Commissioning:
         return fit_stiffness(*np.array(readings).T), np.array(readings)
 
     async def force_dead_times(self, stiffness_n_m: float) -> Array:
-        """Dead times of the force, swung in the middle of the forces, with what a sampled loop
-        adds."""
+        """Dead times from setpoint to force, one for each burst of a chirp about 10 N.
+
+        A sampled loop adds its own delay, because a setpoint is held for a tick.
+        """
         _, felt_n = await self._reading()
         await self._go(self._loop.tip_command[_Z] + (2 * _STEP_N - felt_n) / stiffness_n_m)
         amplitude_m = min(_STEP_N / stiffness_n_m, self.greatest_chirp_m)
@@ -186,7 +188,8 @@ class _Commissioning:
     async def loop_figures(
         self, figures: LoopFigures, usual: LoopFigures
     ) -> tuple[LoopFigures, StepAnswer]:
-        """Twice the damping of the design shows the figures, the design itself shows its steps."""
+        """The figures that the closed loop shows, and its answer to a step with the designed
+        gains."""
         # With twice the damping of the design no overshoot hides the figures (section 4.5, point
         # 4).
         slow = damping(figures, levers(self._loop.settings.lever_m), 2)
@@ -205,8 +208,9 @@ class _Commissioning:
     async def _steps(self, figures: LoopFigures, gains: Array) -> StepAnswer:
         """Mean answer over several steps of the push upwards."""
         speed_m_s = touch_speed_m_s(figures, self._loop.settings.press_n)
-        # The damper alone takes speed times S. A higher step would be held back by the bound of the
-        # speed and not by the loop, and say nothing about it; the rest is room for the overshoot.
+        # At the bound of the speed v the damper alone takes v S. A higher step would be held back
+        # by that bound and say nothing about the loop; the remaining 20 % are room for the
+        # overshoot.
         step_n = min(_STEP_N, 0.8 * speed_m_s * float(gains[_Z]))
         law = self._law(figures, gains, speed_m_s)
         nominal = self._loop.tip_command

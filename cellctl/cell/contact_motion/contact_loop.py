@@ -84,11 +84,10 @@ class ContactLoop:
         self._motion, self._kind = self._motion + 1, kind
 
     async def send(self, tip: Array, at_bound: int = 0) -> ContactSample:
-        """Send six numbers of the tip and wait for the tick; raises what ends the contact.
+        """Send six numbers of the tip, wait for the tick, and take the newest wrench and report.
 
-        ``at_bound``: how many axes have given way as far as they may, for the record.
-
-        That is the fault of a guard that has tripped, ``StreamLate``, or what the stream raises.
+        ``at_bound`` says how many axes have given way as far as they may, for the record. Raises
+        the fault of a guard that has tripped, ``StreamLate``, or what the stream raises.
         """
         # Asked on both sides of the wait for the tick: no setpoint follows a trip that is known,
         # and a trip that comes in during the wait ends the motion without another tick.
@@ -96,7 +95,8 @@ class ContactLoop:
         try:
             report = await self.stream.advance(self.frames.base_T_flange(tip))
         except MotionAborted:
-            # The robot tells of its stop before the guard tells why it has stopped it.
+            # The robot may report the stop before the guard reports why it asked for it. The trip
+            # is the cause, and the abort only its consequence.
             trip = await late_trip(self._guard)
             if trip is None:
                 raise

@@ -18,9 +18,10 @@ X, Y, Z, TILT_X, TILT_Y, YAW = range(6)
 _SHARE_OF_STEP = 0.45
 """Share of the step that the controller accepts from tick to tick, for the path."""
 _SHIFT_SHARE, _TURN_SHARE = 0.15, 0.2
-"""The same for each axis that gives way. Three shifts at a right angle add up by the root of three,
-the two turns that swing the flange about the tip by the root of two: with the path 0.99 of the step
-where the tip lies on the axis of the flange, and the turn about that axis swings nothing."""
+"""The same for each axis that gives way. Three shifts at right angles add up by √3, and the two
+turns that swing the flange about the tip by √2. Together with the path they take 0.45 + 0.15 √3 +
+0.2 √2, which is 0.99 of the step. The third turn is about the axis of the flange, on which the tip
+lies, and swings nothing."""
 _ABOUT_AXES = 0.3
 """Share of the greatest turn from tick to tick for each axis that gives way."""
 
@@ -52,9 +53,11 @@ def giving_way(
     spring: Array | None = None,
     contact_must_stay: bool = False,
 ) -> Press:
-    """Admittance of some axes, others stiff.
+    """Admittance of the axes ``follows``; all others stay stiff.
 
-    ``push`` (6,) is what the peg is to push with; ``spring`` (6,) pulls back to the nominal pose.
+    ``push`` (6,) is the wrench that the peg is to push with, in N and N·m. ``spring`` (6,) in N/m
+    and N·m/rad pulls back to the nominal pose. With ``contact_must_stay`` a lost contact is a
+    fault.
     """
     settings = loop.settings
     weights = levers(settings.lever_m)

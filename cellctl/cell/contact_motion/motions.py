@@ -22,8 +22,8 @@ class Ended(StrEnum):
     FORCE = "force"
     TRAVEL = "travel"
     TIME = "time"
-    """That of a press or of compliance is over. A motion along a way that takes far too long is a
-    fault of its stream, and raises it."""
+    """The time of a press or of a compliant hold is over. No motion along a path ends like this:
+    one that takes far too long raises ``StreamLate``."""
     CONDITION = "condition"
     """The caller's own condition held."""
 
@@ -64,7 +64,8 @@ Condition = Callable[[ContactSample], bool]
 
 
 def never(_sample: ContactSample) -> bool:
-    """A condition that ends nothing: a press that waits for it may lose what it presses on."""
+    """A condition that never holds. A press that is given it may lose its contact without a
+    fault."""
     return False
 
 
@@ -80,9 +81,10 @@ class ContactMotions(ABC):
     async def move_free(
         self, task_position_tip_m: Vector, task_rotation_tip_rad: Vector, speed_m_s: float
     ) -> ContactMotion:
-        """Straight to a pose; a contact above the touch force on the way ends it by ``FORCE``.
+        """Go straight to a pose through free space.
 
-        So does one in which it begins and that it does not leave.
+        A force above the press of the search ends it by ``FORCE``: something stands in the way, or
+        the motion began in a contact that it does not leave.
         """
 
     @abstractmethod
@@ -96,8 +98,8 @@ class ContactMotions(ABC):
     ) -> ContactMotion:
         """Go along a unit vector until the force against it exceeds ``force_n``.
 
-        Without a speed: the greatest that keeps the overshoot of the force within ``force_n``. A
-        touch across z after a press goes on to press.
+        Without a speed it takes the greatest that keeps the overshoot of the force within
+        ``force_n``. A touch across z that follows a press keeps pressing along z.
         """
 
     @abstractmethod
@@ -155,9 +157,9 @@ class ContactMotions(ABC):
     ) -> ContactMotion:
         """Go into the hole to a depth below the face, giving way sideways and in attitude.
 
-        The feed slows with the axial force and backs off above 60 % of the limit. ``past_m``: it
-        goes on past the depth by so much, slowly as long as nothing is felt. One that begins deeper
-        ends there.
+        The feed slows with the axial force and backs off above 60 % of the limit. It goes on for
+        ``past_m`` beyond the depth, slowly as long as no force is felt. A feed that begins deeper
+        than that ends where it stands.
         """
 
     @abstractmethod

@@ -10,7 +10,8 @@ from cellctl.clock import now_s
 from cellctl.errors.streamed_contact import HeldTooLong
 
 HOLD_S = 30.0
-"""Longest work beside a standing stream. It ends only what hangs."""
+"""Longest work beside a standing stream, far above what any takes: only work that hangs is
+ended."""
 
 
 async def hold_while(loop: ContactLoop, work: Coroutine[Any, Any, None], limit_s: float) -> None:

@@ -6,8 +6,6 @@ from typing import Any
 import numpy as np
 
 from cellctl.cell.contact_motion.contact_loop import ContactLoop
-from cellctl.cell.contact_motion.ends import End, SomethingMet, arrived, first_of, when
-from cellctl.cell.contact_motion.free_way import free_speed_m_s
 from cellctl.cell.contact_motion.giving_way import (
     TILT_X,
     TILT_Y,
@@ -19,6 +17,9 @@ from cellctl.cell.contact_motion.giving_way import (
     fastest_rad_s,
     giving_way,
 )
+from cellctl.cell.contact_motion.motion_rules.ends import End, SomethingMet, arrived, first_of, when
+from cellctl.cell.contact_motion.motion_rules.feed import FeedRule
+from cellctl.cell.contact_motion.motion_rules.free_speed import free_speed_m_s
 from cellctl.cell.contact_motion.motions import (
     Condition,
     ContactMotion,
@@ -27,7 +28,6 @@ from cellctl.cell.contact_motion.motions import (
     Ended,
     Vector,
 )
-from cellctl.cell.contact_motion.stalled_feed import StalledFeed
 from cellctl.cell.contact_motion.standing import HOLD_S, hold_while
 from cellctl.cell.contact_motion.streamed_motion import Press, StreamedMotion
 from cellctl.cell.contact_motion.ticks import MotionKind
@@ -62,9 +62,10 @@ class StreamedContact(ContactMotions):
     def __init__(self, loop: ContactLoop) -> None:
         self._loop, self._settings = loop, loop.settings
         self.watched_n = loop.settings.limit_n
-        """Force at which the guard stops the arm; less where it watches closer for a phase."""
+        """Force at which the guard stops the arm; ``watch_closer`` lowers it for a phase."""
         self._pressed_n = 0.0
-        """Force with which the last motion pressed; a push sideways goes on to press with it."""
+        """Force with which the last motion pressed along z; a touch across z keeps pressing with
+        it."""
 
     async def move_free(
         self, task_position_tip_m: Vector, task_rotation_tip_rad: Vector, speed_m_s: float
@@ -211,7 +212,7 @@ class StreamedContact(ContactMotions):
         target = self._loop.tip_command.copy()
         target[2] = max(target[2], depth_m + past_m)
         path = self._path(*straight(self._loop.tip_command, target, _TURN_LEVER_M))
-        feed = StalledFeed(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
+        feed = FeedRule(self._settings.figures, force_limit_n, depth_m, self._loop.period_s)
         press = giving_way(
             self._loop, np.zeros(6), (X, Y, TILT_X, TILT_Y), spring=self._settings.springs
         )
@@ -280,7 +281,8 @@ class StreamedContact(ContactMotions):
         limit_s = _LATEST_S + _LATEST_RATIO * way / slowest
         motion = await StreamedMotion(self._loop, path, speed, end, limit_s, press).run()
         if motion.ended is Ended.TIME:
-            # Late ticks let the arm stand: where it has come to says nothing of the part.
+            # A fault of the stream and no end of the motion: late ticks have kept the arm from
+            # moving, so the place that it has come to says nothing about the part.
             depth_mm = float(motion.last.task_position_tip_m[2]) / MM
             raise StreamLate(
                 f"{kind.value} was given up after {limit_s:.1f} s with {path.remaining / way:.0%} "

@@ -16,7 +16,7 @@ class Trail:
         self._poses: list[Array] = []
 
     def begin(self) -> None:
-        """Up from here is the way out: the tip came sideways, through the air or over a face."""
+        """Forget the way so far: the tip came here sideways, so it can leave straight upwards."""
         self._poses.clear()
 
     def note(self, tip: Array) -> None:

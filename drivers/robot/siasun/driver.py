@@ -24,10 +24,9 @@ from cellctl.interfaces.robot import RobotState
 from cellctl.interfaces.streaming_robot import PoseStream, StreamingRobot, StreamLimits, StreamOffer
 from drivers.robot.siasun import faults, protocol
 from drivers.robot.siasun.bounds import Bounds
-from drivers.robot.siasun.channels.command_channel import CommandChannel
+from drivers.robot.siasun.channels.channel_pair import ChannelPair
 from drivers.robot.siasun.channels.latched import latched
 from drivers.robot.siasun.channels.running_command import RunningCommand
-from drivers.robot.siasun.channels.state_channel import StateChannel
 from drivers.robot.siasun.channels.stream import SiasunStream
 from drivers.robot.siasun.config import SiasunConfig
 from drivers.robot.siasun.described_arm import DescribedArm
@@ -52,8 +51,14 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         self._targets = Targets(self._bounds, config)
         self._latch: CellError | None = None
         """Why moves are refused until ``rearm``."""
-        self._command = CommandChannel(name, config, self._on_command_lost)
-        self._state = StateChannel(name, config, self._on_stopped, self._on_state_lost)
+        self._channels = ChannelPair(
+            name,
+            config,
+            on_command_lost=self._on_command_lost,
+            on_stopped=self._on_stopped,
+            on_state_lost=self._on_state_lost,
+        )
+        self._command, self._state = self._channels.command, self._channels.state
         self._connecting = asyncio.Lock()
         self._connected = False
 
@@ -76,24 +81,12 @@ class SiasunRobot(DescribedArm, StreamingRobot):
                 self._connected = True
 
     async def _connect(self) -> None:
-        host, timeout_s = self._config.listen_host, self._config.connect_timeout_s
         try:
-            # Both ports before any wait, because the job programs of a robot connect in any order.
-            await self._command.channel.listen(host, self._config.command_port)
-            await self._state.channel.listen(host, self._config.state_port)
-            async with asyncio.timeout(timeout_s):
-                await self._command.channel.wait_connected()
-                await self._state.channel.wait_connected()
-                await self._state.wait(lambda _: True, timeout_s)
+            await self._channels.open()
             self._bounds.table_fits(self._state.newest(self._config.stale_s))
         except TargetOutOfBounds as misfit:
             await self._close()
             raise VersionMismatch(misfit.detail) from misfit
-        except TimeoutError:
-            command, state = self._command.channel, self._state.channel
-            missing = state if command.connected else command
-            await self._close()
-            raise missing.timeout(timeout_s) from None
         # Also after a cancellation: a port that stays open would be in use at the next attempt.
         except BaseException:
             await self._close()
@@ -109,7 +102,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
 
     def incidents(self) -> tuple[CellError, ...]:
         """Strangers that called on the robot's ports."""
-        return (*self._command.channel.incidents(), *self._state.channel.incidents())
+        return self._channels.incidents()
 
     def state(self, max_age_s: float = 0.25) -> RobotState:
         """The newest report. ``stop_latched`` includes this driver's own latch."""
@@ -121,11 +114,14 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         return link_facts({"CMD": self._command.channel, "STA": self._state.channel})
 
     def round_trips_s(self) -> tuple[float, ...]:
-        """Round trips of this session's commands; no question of the protocol does nothing."""
+        """Time from the sending of each command of this session to its acceptance.
+
+        Real commands are timed: the protocol has none that does nothing and could serve as a ping.
+        """
         return tuple(self._command.round_trips_s)
 
     def least_acceleration_m_s2(self) -> float:
-        """Of a job program that takes percents, one percent."""
+        """The least that the job program can be told: one percent, where it takes percents."""
         return self._command.words.least_acceleration_mm_s2 * MM
 
     async def move_joint(self, joints_rad: Array, *, speed_ratio: float) -> RobotState:
@@ -167,7 +163,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
 
     def stream_offer(self) -> StreamOffer:
         """What the job program has offered in its hello, as far as the configuration allows it."""
-        self._check_link()
+        self._channels.require_connected()
         hello = self._command.channel.hello
         if hello.stream is None:
             raise StreamNotOffered(f"{self.name}: job program {hello.job_version}")
@@ -221,7 +217,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         """REARM; returns when the state shows the latch released."""
         if self._command.running:
             raise MotionRejected(f"{self.name}: cannot rearm while a motion runs")
-        self._check_link()
+        self._channels.require_connected()
         # Remembered, so that a stop that comes during the release is not released with it.
         latch = self._latch
         await self._command.run(self._command.words.rearm, self._config.reply_timeout_s)
@@ -258,7 +254,7 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     def _check_ready(self) -> None:
         if self._command.running:
             raise MotionRejected(f"{self.name}: another motion is running")
-        self._check_link()
+        self._channels.require_connected()
         if self._latch is not None:
             raise NotRearmed(f"{self.name}: {self._latch}") from self._latch
         state = self.state(self._config.stale_s)
@@ -271,16 +267,9 @@ class SiasunRobot(DescribedArm, StreamingRobot):
         if self._state.channel.connected:
             await asyncio.shield(asyncio.ensure_future(self.stop()))
 
-    def _check_link(self) -> None:
-        for channel in (self._command.channel, self._state.channel):
-            if not channel.connected:
-                raise LinkLost(f"{channel} is not connected")
-
     async def _close(self) -> None:
         self._connected = False
-        self._command.fail(LinkLost(f"{self.name} was disconnected"))
-        await self._command.channel.close()
-        await self._state.close()
+        await self._channels.close(LinkLost(f"{self.name} was disconnected"))
 
     def _on_stopped(self) -> None:
         """Standstill is confirmed: whatever ran has ended, even if its ABRT got lost."""
@@ -289,7 +278,8 @@ class SiasunRobot(DescribedArm, StreamingRobot):
     def _on_command_lost(self, fault: LinkError) -> None:
         self._latch = fault
         self._command.fail(fault)
-        # Here the main job reads nothing while it moves the arm; its background job reads the stop.
+        # The main job of SJL/2 reads nothing while it moves the arm, so it does not notice that its
+        # channel is gone. Its background job reads STA and can still stop the arm.
         if self._state.channel.hello.compact:
             self._state.request_stop()
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from cellctl.cell.contact_motion.ends import SOFTEST
+from cellctl.cell.contact_motion.motion_rules.ends import SOFTEST
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended
 from cellctl.geometry.pose import Array
 from cellctl.processes.peg_in_hole.offline.curve import PegCurve

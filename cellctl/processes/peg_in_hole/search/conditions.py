@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cellctl.cell.contact_motion.ends import least_change_n
+from cellctl.cell.contact_motion.motion_rules.ends import least_change_n
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.processes.peg_in_hole.first_contact.classify import (
     ContactClass,

@@ -5,7 +5,7 @@ with all that is left of the way of its push. So a push on which nothing is felt
 drawn would have been met, and goes on only after a greater press along the axis was felt.
 """
 
-from cellctl.cell.contact_motion.ends import SOFTEST, least_change_n
+from cellctl.cell.contact_motion.motion_rules.ends import SOFTEST, least_change_n
 from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport, depth_m, either
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask

@@ -5,7 +5,7 @@ from math import isnan, nan
 
 import numpy as np
 
-from cellctl.cell.contact_motion.ends import SOFTEST, least_change_n
+from cellctl.cell.contact_motion.motion_rules.ends import SOFTEST, least_change_n
 from cellctl.cell.contact_motion.motions import (
     ContactMotion,
     ContactMotions,

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from cellctl.cell.contact_motion.ends import SOFTEST
+from cellctl.cell.contact_motion.motion_rules.ends import SOFTEST
 from cellctl.cell.contact_motion.motions import ContactSample
 
 _FROM_SHARE = 0.4

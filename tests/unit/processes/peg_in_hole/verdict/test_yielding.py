@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cellctl.cell.contact_motion.ends import SOFTEST
+from cellctl.cell.contact_motion.motion_rules.ends import SOFTEST
 from cellctl.cell.contact_motion.motions import ContactSample
 from cellctl.processes.peg_in_hole.verdict.yielding import yielded_m
 

@@ -7,19 +7,22 @@ from cellctl.force.contact.streamed.speeds import FEED_N, feed_override, touch_s
 _STALLED_SHARE = 0.1
 """A feed that the force has slowed to less than this share counts as standing."""
 _STALLED_S = 0.3
-"""For so long it has to stand, so that a chamfer to which the arm is just giving way is not taken
-for the end. The exact value only delays the end of a feed that is stuck."""
+"""A feed has to stand for this time, so that a chamfer to which the arm is just giving way is not
+taken for the end. The exact value only delays the end of a feed that is stuck."""
 _LAST_M = 0.5e-3
 """Length of the last stretch before the seat, which is gone at the speed of a touch (section
 4.4)."""
 _TOUCH_SHARE = 0.8
 """Speed over that stretch, as a share of the feed: a touch may grow by 8 N, a feed by 10 N."""
 _UNFELT_SHARE = 0.2
-"""The same past the seat where nothing is felt of it. A sensor that is dead shows that, too, and
-all that the arm goes on until it is stopped is force then."""
+"""The same beyond the depth of the seat, as long as no force is felt. A dead sensor shows no force
+either, and then whatever the arm travels until it is stopped turns into force."""
+_SLOWEST_SHARE = 0.2
+"""Share of the full speed from which the time limit of a feed follows: a part that goes in hard
+slows the feed for most of its way."""
 
 
-class StalledFeed:
+class FeedRule:
     """One feed to a seat at ``depth_m``. Section 4.4 of the study of insertion by touch."""
 
     def __init__(
@@ -34,9 +37,8 @@ class StalledFeed:
 
     @property
     def slowest_m_s(self) -> float:
-        """Speed that counts for the greatest time that the feed may take: a fifth of the full one,
-        as the force slows a feed most of the way where a part goes in hard."""
-        return 0.2 * self._full_m_s
+        """Speed from which the time limit of the feed follows."""
+        return _SLOWEST_SHARE * self._full_m_s
 
     def speed_m_s(self, sample: ContactSample) -> float:
         """Speed of the next tick; negative to back off."""

@@ -10,9 +10,12 @@ from cellctl.force.contact.streamed.path import PathFollower
 End = Callable[[ContactSample], Ended | None]
 
 SOFTEST = 2.0
-"""How many times softer than along the hole arm and contact may be across it."""
+"""Arm and contact may be this many times softer across the hole than along it, the direction in
+which the stiffness of the cell is measured. Arms differ by direction; the bound keeps a part that
+moves under a push from passing for a soft arm."""
 _REPEATABLE_M = 0.1e-3
-"""What the way of an arm is known to: so far it may seem to go without leaving its contact."""
+"""Accuracy of the travel that an arm reports: it may seem to go this far and not leave its
+contact."""
 _LEAST_CHANGE_N, _LEAST_SIGMAS = 1.0, 8.0
 """Least change of a force that means something: in N, for friction, and in standard deviations of
 one reading. The difference of two readings scatters by √2 of one, and motions compare two at each
@@ -20,7 +23,10 @@ tick: with eight, more than five of the difference, chance has no part in it."""
 
 
 def least_change_n(force_sigma_n: float) -> float:
-    """A force that changes by less may do so by friction, or by noise of this deviation."""
+    """Least change of a force that means something; a smaller one may be friction, or noise.
+
+    ``force_sigma_n`` is the standard deviation of one reading.
+    """
     return max(_LEAST_CHANGE_N, _LEAST_SIGMAS * force_sigma_n)
 
 
@@ -44,17 +50,21 @@ def when(until: Condition | None) -> End:
 
 
 class SomethingMet:
-    """A motion in the free ends when the force on the peg, in any direction, is above a limit.
+    """Ends a motion through free space when the force on the peg, in any direction, exceeds a
+    limit.
 
-    Where it begins in contact, that force has to go on the way by which arm and contact have
-    yielded to it, and may not grow meanwhile.
+    A motion may begin in contact, for instance when it leaves a face. Then the force must fall
+    below the limit within the distance by which arm and contact have yielded to it, and it may not
+    grow meanwhile: a force that stays or grows belongs to something that the motion drives into.
     """
 
     def __init__(self, limit_n: float, stiffness_n_m: float) -> None:
         self._limit_n, self._stiffness_n_m = limit_n, stiffness_n_m
         self._begin: ContactSample | None = None
-        """In contact, until that is left."""
+        """The first sample with a force above the limit, if the motion began in contact."""
         self._left = False
+        """True once the force has been below the limit: any force above it is a new contact
+        then."""
 
     def __call__(self, sample: ContactSample) -> Ended | None:
         """``FORCE`` once something is met."""

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cellctl.cell.contact_motion.ends import SomethingMet
+from cellctl.cell.contact_motion.motion_rules.ends import SomethingMet
 from cellctl.cell.contact_motion.motions import ContactSample, Ended
 
 _LIMIT_N, _STIFFNESS_N_M = 7.0, 1e5
