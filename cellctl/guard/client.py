@@ -62,8 +62,8 @@ class GuardClient:
         self._started: asyncio.Future[None] | None = None
         """What ``start`` waits for: done when sensor and stop channel are open, or cannot be."""
         self._stopping = self._ready = False
-        """Whether the end was asked for, and whether ``start`` has succeeded: only a death after
-        the one and without the other is a trip."""
+        """Whether the end was asked for, and whether ``start`` has succeeded. A death counts as a
+        trip only if it comes after a start and was not asked for."""
         self._trip: GuardTrip | None = None
         self._fault: CellError | None = None
         """Why the guard could not start, or gave up its sensor."""

@@ -15,14 +15,14 @@ from cellctl.guard.limits import (
 
 RAW_MARGIN_N = 12.0
 RAW_MARGIN_N_M = 6.0
-"""By so much a single sample may exceed a filtered limit, for its noise.
+"""How far a single sample may exceed the filtered limit because of its noise.
 
 No data sheet states that noise. Assumed is 0.05 % of a full scale of 5 kN and 1 kN·m, that is
 2.5 N and 0.5 N·m: 12 N are nearly five standard deviations, so that even of a force at its filtered
 limit only one sample in a million passes them by chance."""
 RATE_RATIO = 0.1
-"""What the rate of the sensor may be off, either way: far more than any clock is off, and far less
-than what a wrong set-up (half or twice the rate) makes."""
+"""How much the rate of the sensor may differ from its nominal rate: far more than any clock is off,
+and far less than a wrong set-up makes (half or twice the rate)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class Sensing:
 
     @property
     def rate_band_hz(self) -> tuple[float, float]:
-        """Rate that counts as right; a silence that is no fault yet may fall to either side."""
+        """Rates that count as right, averaged over a window of the guard's rate detector."""
         # A gap of almost ``stale_s`` is allowed, and a window of the rate detector that contains it
         # counts that many samples less. Without this share it would trip for the rate.
         slack = RATE_RATIO + self.stale_s / DEFAULT_RATE_WINDOW_S
@@ -54,7 +54,7 @@ def guard_limits(
     touch: CusumTouch | None = None,
     filter_s: float = DEFAULT_FILTER_S,
 ) -> GuardLimits:
-    """What the guard watches when the filtered wrench may be so great."""
+    """What the guard watches when the filtered wrench may be as great as ``filtered``."""
     fx, fy, fz, mx, my, mz = filtered
     return GuardLimits(
         raw=(

@@ -43,8 +43,8 @@ class WrenchTolerance:
     force_n: float
     moment_n_m: float
     axial_n: float | None = None
-    """Along z of the frame, where that differs: a part that is drawn out of what it was pressed
-    into changes the force by the press that goes, and by the pull that comes."""
+    """Tolerance along z of the frame, where it differs. A part that is drawn out of what it was
+    pressed into first loses the press and then meets the pull: the force changes by both."""
 
     @property
     def limits(self) -> Six:
@@ -66,11 +66,13 @@ async def guarded_moves(
 
     The limits are on the *change* since then: wherever the arm stands, in contact or not, a move
     that is free changes nothing but inertia. ``flange_T_wrench`` is the frame in which the limits
-    hold. A trip stops the robot and raises its fault, and the guard stays latched. A weight that
-    is not subtracted is part of the zero: a move that turns it is one that changes the force. What
-    a part is pressed with that these moves take out of its place is part of it too: ``leaves``, as
-    far as that is known, which a restart does not forget. Raises ``NotSettled``, ``GuardRefused``
-    and what the moves raise.
+    hold. A trip stops the robot and raises its fault, and the guard stays latched.
+
+    The zero of the tare holds whatever the sensor feels at the beginning: a weight that is not
+    subtracted, so that a move that tilts it changes the force, and the force with which a part is
+    pressed into the place that these moves take it out of. ``leaves`` says what is known of that
+    force, and is kept on the disk, so that a restart does not forget it. Raises ``NotSettled``,
+    ``GuardRefused`` and what the moves raise.
     """
     guard = arm.guard
 
@@ -81,8 +83,8 @@ async def guarded_moves(
 
     # Frame and tare cannot be changed while armed: the signal would jump against the limits.
     await guard.disarm()
-    # Before load and frame are set, which drops the zero: where it does not settle, the next
-    # attempt still knows what the zero hides.
+    # Settle first: setting load and frame drops the zero, and with it what is known of the force
+    # that it hides. If the arm does not settle, the next attempt still needs that.
     await settle(guard)
     await leave_weight_to_tare(guard)
     sensor_T_wrench = arm.flange_T_sensor.inv() * flange_T_wrench
@@ -117,17 +119,16 @@ async def leave_weight_to_tare(guard: GuardClient) -> None:
 async def guarded(robot: Robot, guard: GuardPort, motion: Motion) -> GuardTrip | None:
     """Run a robot move; None at its target, the trip when the guard stopped it.
 
-    A robot that was stopped at its own panel, or by an error of its own, raises that fault and not
-    the trip which its brakes have caused.
-
     The guard has sent its own stop before it reports; the stop sent here is the second one and
-    waits for standstill. Faults of the robot and its link are raised as they are.
+    waits for standstill. Faults of the robot and its link are raised as they are. So is the fault
+    of a robot that was stopped at its panel or by an error of its own, although its brakes have
+    shaken the load so much that the guard has tripped.
     """
     moving = asyncio.create_task(motion)
     watching = asyncio.create_task(_tripped(guard))
     try:
         await asyncio.wait({moving, watching}, return_when=asyncio.FIRST_COMPLETED)
-        # Also where the guard has tripped in the moment in which the robot arrived.
+        # Not only if the watch has ended first: the guard may trip just as the robot arrives.
         if guard.trip is not None:
             # The guard's stop went over its own channel. The daemon's goes over another one, and
             # returns only when the robot confirms that it stands. Without it nobody here has asked
@@ -160,7 +161,10 @@ async def _outcome(
 
 
 def _braked_by_itself(state: RobotState) -> bool:
-    """Its brakes shake the payload beyond the limits of the guard, which is no contact then."""
+    """Whether panel, drives or an error have stopped the robot.
+
+    Its brakes then shake the payload beyond the limits of the guard, and nothing was touched.
+    """
     panel = state.emergency_stop or state.mode is not RobotMode.REMOTE
     return panel or not state.drives_on or state.error_code != 0
 

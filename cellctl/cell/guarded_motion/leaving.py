@@ -9,8 +9,8 @@ from cellctl.errors.force import LiftOffHeld
 from cellctl.interfaces import Robot
 
 _LEAST_PULL_N = 5.0
-"""Less than this is no pull that could be watched: the noise of a reading, and what a hose makes of
-the first millimetre."""
+"""A smaller pull cannot be watched: noise of a reading, or the pull of a hose over the first
+millimetre, would look the same."""
 
 
 def able_to_leave(robot: Robot, guard: GuardPort) -> bool:
@@ -23,14 +23,15 @@ def able_to_leave(robot: Robot, guard: GuardPort) -> bool:
 
 
 async def pressed_n(arm: GuardedRobot, inwards: float, most_n: float) -> float:
-    """Force with which a part is pressed into its place, as far as guard and disk tell; at most
-    ``most_n``, and negative where the part is pulled.
+    """Force in N with which a part is pressed into its place; negative where the part is pulled.
 
-    To be asked before a tare, which hides it: a part that is drawn out changes the force by this
-    before it is pulled at all. What an earlier tare has hidden counts. ``inwards`` is 1 where z of
-    the guard's frame points into the place and -1 where it points out. A guard without a frame of
-    the part or a zero that was taken in it does not know; it and the daemon may have been started
-    anew. Then the zero that was kept counts. Without one, or a sample, nobody knows: ``most_n``.
+    Ask before a tare, which hides this force. When the part is drawn out, the force changes by this
+    much before the part is pulled at all. What an earlier tare has hidden is counted in.
+
+    ``inwards`` is 1 where z of the guard's frame points into the place and -1 where it points out.
+    A guard that has no frame of the part, or no zero that was taken in it, does not know: guard or
+    daemon may have been started anew. Then the zero that was kept on the disk counts. The answer is
+    at most ``most_n``, and it is ``most_n`` without such a zero or without a sample.
     """
     guard = arm.guard
     hidden_n = guard.hidden_axial_n
@@ -45,10 +46,10 @@ async def pressed_n(arm: GuardedRobot, inwards: float, most_n: float) -> float:
 
 
 def change_while_drawn_n(pull_n: float, press_n: float) -> float:
-    """Greatest change of force until a part that is pressed is pulled with ``pull_n``.
+    """Change of the force (N) from a part that is pressed to one that is pulled with ``pull_n``.
 
-    A part that is pulled already has the less left. Raises ``LiftOffHeld`` where that is nothing:
-    otherwise each new attempt, from a zero of its own, would pull by as much more than the last.
+    For a part that is pulled already, less is left. Raises ``LiftOffHeld`` where nothing is left:
+    each new attempt begins from a zero of its own, and would otherwise pull harder than the last.
     """
     if pull_n + press_n < _LEAST_PULL_N:
         raise LiftOffHeld(f"it is pulled with {-press_n:.0f} N already, allowed {pull_n:.0f} N")

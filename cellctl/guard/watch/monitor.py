@@ -122,7 +122,7 @@ class WrenchMonitor:
         silent_s = now_s - self.sample_time_s - self._sample_excuse_s
         if not silent_s <= limits.stale_s:
             detail = f"no sample for {silent_s * 1e3:.1f} ms, allowed {limits.stale_s * 1e3:.1f} ms"
-            detail += _besides(self._sample_excuse_s)
+            detail += _excused(self._sample_excuse_s)
             self.stop(TripReason.SENSOR_SILENT, now_s, detail, value=silent_s)
         elif armed.rate.check(now_s):
             detail = f"{armed.rate.rate_hz:.0f} Hz, allowed {limits.rate_hz[0]:.0f} … "
@@ -264,7 +264,7 @@ class WrenchMonitor:
         if not age_s <= limits.flange_age_s:
             allowed_ms = limits.flange_age_s * 1e3
             detail = f"newest pose {age_s * 1e3:.0f} ms old, allowed {allowed_ms:.0f} ms"
-            detail += _besides(self._flange_excuse_s)
+            detail += _excused(self._flange_excuse_s)
             self.stop(TripReason.FLANGE_STALE, now_s, detail, value=age_s)
 
     def _continue_tare(self, tare: TareAverage, wrench: Six, time_s: float) -> None:
@@ -275,8 +275,8 @@ class WrenchMonitor:
             self._tare, self.tare_result = None, result
 
 
-def _besides(excused_s: float) -> str:
-    """What a trip for silence says about pauses of the machine."""
+def _excused(excused_s: float) -> str:
+    """What a trip for silence says of the pauses of the machine that were not counted."""
     return f", besides {excused_s * 1e3:.0f} ms of a machine that stood still" if excused_s else ""
 
 

@@ -13,8 +13,8 @@ _RETRY_S = 0.5
 exact value does not matter, because a guard without its channel cannot be armed."""
 
 STAND_S = 2.0
-"""A robot that has latched a stop and reports for so long that it still moves is not stopping: arms
-come to rest within a second."""
+"""A robot that has latched a stop and still reports after this time that it moves is not stopping:
+arms come to rest within a second."""
 
 
 class StopSupervisor:
@@ -24,9 +24,11 @@ class StopSupervisor:
     connection, and a robot program can ignore it. So the request is repeated at every beat until
     the robot reports that it has latched the stop. A robot that has not done so after
     ``confirm_s`` gets no more heartbeats: its dead man is the second way to stop it, and does not
-    depend on the part of its program that has just failed. Neither does one that has latched it and
-    was not seen standing ``STAND_S`` after it was asked, and that is asked again. A robot that has
-    stood and moves later under its latch is one that somebody jogs at its panel.
+    depend on the part of its program that has just failed.
+
+    A robot that has latched the stop but was not seen standing within ``STAND_S`` gets no more
+    heartbeats either, and is asked again. Once it was seen standing, it may move under its latch:
+    then somebody jogs it at its panel.
 
     No method blocks. Connecting can take seconds, in which samples still have to be judged, so a
     thread connects and then hands the open channel over; the two never use it at the same time.

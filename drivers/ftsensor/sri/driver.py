@@ -22,7 +22,7 @@ class SriSensor(FtSensor):
 
     @classmethod
     def remarks(cls, config: SriConfig) -> Mapping[str, str]:
-        """Samples of which this PC makes newtons."""
+        """A remark where this PC, and not the box, converts the samples to newtons."""
         return config.remarks
 
     def __init__(self, config: SriConfig) -> None:
@@ -107,7 +107,10 @@ class SriSensor(FtSensor):
         return f"{self._config.serial_number or 'no serial number'} ({self._firmware})"
 
     def _pump(self) -> list[WrenchSample]:
-        """Do all that can be done without waiting; reconnect a broken link after a pause."""
+        """Do what can be done without waiting, and return the samples that have arrived.
+
+        A broken link is connected again after a pause.
+        """
         time_s = now_s()
         if self._session is None and time_s < self._retry_s:
             return []

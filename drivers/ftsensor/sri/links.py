@@ -7,7 +7,7 @@ from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.connection import Connection
 from drivers.ftsensor.sri.protocol import StreamDecoder, command
 from drivers.ftsensor.sri.session import Decoder
-from drivers.ftsensor.sri.startup import AtStartUp, CanStartUp, StartUp
+from drivers.ftsensor.sri.startup import AtCommandStartUp, CanStartUp, StartUp
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +35,7 @@ def link_for(config: SriConfig) -> Link:
     return Link(
         _stream_connection(config),
         lambda: StreamDecoder(config.layout),
-        lambda: AtStartUp(config).run(),
+        lambda: AtCommandStartUp(config).run(),
         command("GSD", "STOP"),
     )
 

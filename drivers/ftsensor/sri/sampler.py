@@ -7,6 +7,7 @@ from drivers.ftsensor.sri.timing import SampleClock
 from drivers.ftsensor.sri.values import Conversion, engineering
 
 _NUMBERS = 0x10000
+"""The package number has 16 bits."""
 _UNCOUNTED = 50
 """Frames of one number at the beginning of a stream: no box repeats its first frame so often."""
 _RENUMBERED = _NUMBERS // 2
@@ -46,13 +47,13 @@ class Sampler:
     def take(self, frames: list[Frame], receive_s: float) -> list[WrenchSample]:
         """Samples of frames that arrived together, oldest first."""
         found: list[WrenchSample] = []
-        # Of samples that arrive in one read, only the last can be new; the others were taken
-        # earlier.
+        # Frames that arrive in one read were taken one period after the other, so only the last
+        # sample can be as new as the read; ``behind`` counts how many came after each.
         behind = len(frames) * self._points
         for frame in frames:
             if frame.number == self._last:
-                # The box sends its last frame again: taken for a new sample, a force of before
-                # would look like one of now.
+                # The box has sent its last frame again. Taken for a new sample, an old force would
+                # pass for the present one.
                 self.invalid += 1
                 behind -= self._points
                 if self._repeats_of_first is not None:

@@ -47,9 +47,11 @@ class BoxSession:
         self._waiting: Exchange | None = None
         self._begun = False
         self._was_prompt = False
+        """The first frame has come, and not too late."""
         self._deadline_s = now_s + config.connect_timeout_s
         self._quiet_since_s = now_s
         self._started_s = self._empty_s = now_s
+        """When the stream was started, and when it was last looked at in vain."""
         self._skipped_before = 0
         self._errors_before = 0
         connection.connect()

@@ -56,7 +56,7 @@ StartUp = Generator[Exchange, Reply | None, BoxSetup]
 _Ask = Generator[Exchange, Reply | None, str | None]
 
 
-class AtStartUp:
+class AtCommandStartUp:
     """Start-up over TCP and serial, by AT commands. The last yield starts the stream."""
 
     def __init__(self, config: SriConfig) -> None:

@@ -1,20 +1,22 @@
 """Sample times from arrival times, without the jitter of the transport.
 
 A sample cannot arrive before it was taken, and the least delayed one of many arrives almost at
-once. So the estimate runs ahead at the device's pace and is tied to the earliest arrivals.
+once. So the estimate goes on by one period of the device for each sample, and at the end of each
+window it is shifted to the sample that has arrived with the least delay.
 """
 
 _WINDOW_S = 0.5
 """Stretch over which phase and pace are estimated: long enough to hold samples that came at once,
 short against the drift of the two clocks."""
 _PAUSE_S = 0.25
-"""An estimate this far behind has missed a pause of the stream: start from the arrival again."""
-
+"""An estimate this far behind the arrivals has missed a pause of the stream: it begins anew at the
+arrival."""
 _BACKLOG_S = 0.02
-"""A sample this much earlier than estimated is one of those that a pause has held back."""
+"""A sample that arrives this much earlier than estimated is one of those that a pause has held
+back."""
 _PACE_DOUBT = 0.02
-"""Relative difference between the pace of the phases and that of the arrivals, from which on the
-phases are not believed."""
+"""Largest relative difference between the period that follows from the estimates and that from the
+arrivals. Beyond it the estimates are not believed."""
 
 
 class SampleClock:
@@ -24,8 +26,8 @@ class SampleClock:
         self.rate_hz = 0.0
         """Measured over the last window; 0 before the first one ended."""
         self.lag_s = 0.0
-        """How much later than they were taken samples arrive, as far as pauses of the stream show
-        it: what a pause has held back, and nothing has made up for within a window."""
+        """How late the samples arrive because of a pause of the stream: what the pause has held
+        back and the samples after it have not made up for within a window."""
         self.deviations = 0
         """Windows outside the tolerance."""
         self._nominal_hz = rate_hz
@@ -44,7 +46,8 @@ class SampleClock:
         self._periods = 0
         self._least_delay_s = 0.0
         self._jumped_s = self._jumped_before_s = 0.0
-        """What pauses have held back and nothing has made up for: now, and a window ago."""
+        """Time that pauses have held samples back and that nothing has made up for yet: now, and at
+        the end of the window before."""
         self.lag_s = 0.0
 
     def stamp(self, receive_s: float, periods: int, behind: int = 0) -> float:
@@ -53,6 +56,7 @@ class SampleClock:
         ``behind`` says how many samples came after it in the same read: it was not taken later
         than so many periods before the read.
         """
+        # The latest time at which this sample can have been taken.
         bound_s = receive_s - behind * self._period_s
         if not self._started:
             self._started = True
@@ -63,13 +67,13 @@ class SampleClock:
         self._estimate_s += periods * self._period_s
         self._periods += periods
         delay_s = bound_s - self._estimate_s
-        # A sample cannot arrive before it was taken, so the estimate was late; far behind, it has
-        # missed a pause.
+        # Negative: the sample arrived before the time that was estimated for it, so the estimate is
+        # late. Far too large: the estimate has missed a pause. Both make it begin anew here.
         if delay_s < 0.0 or delay_s > _PAUSE_S:
             paused = bound_s - before_s > _PAUSE_S
             if paused or self._jumped_s > 0.0:
-                # No sample is missing, or ``periods`` would say so: those behind the pause wait
-                # somewhere, until what arrives faster than it is taken has made up for it.
+                # No sample is missing, or ``periods`` would say so. So the samples from the pause
+                # wait in some buffer, and arrive late until the stream has caught up with them.
                 self._jumped_s = max(0.0, self._jumped_s + delay_s)
                 if paused or delay_s < -_BACKLOG_S:
                     # Neither a pause nor the rush after it says anything about the pace.
@@ -85,11 +89,13 @@ class SampleClock:
         return self._last_s
 
     def _end_window(self, bound_s: float) -> None:
-        """Tie the phase to the least delayed sample, learn the pace, judge the rate.
+        """Shift the estimate to the least delayed sample, learn the period, judge the rate.
 
-        The tied phases give the pace finely, plain arrivals give it whatever the pace was before.
+        The estimates of two windows give the period finely, but only if it was nearly right before;
+        the plain arrivals give it roughly, whatever it was.
         """
-        # Not at once: what one read has left in the socket, the next one catches up with.
+        # The smaller of two windows: what one read has left in the socket, the next catches up
+        # with.
         self.lag_s = min(self._jumped_s, self._jumped_before_s)
         # Each pause is judged by itself: a sum over hours would grow with every hiccup of a PC.
         self._jumped_s -= self.lag_s
@@ -98,8 +104,8 @@ class SampleClock:
         if self._origin_s is not None:
             fine_s = (self._estimate_s - self._origin_s) / self._periods
             coarse_s = (bound_s - self._arrival_origin_s) / self._periods
-            # The fine pace rests on the phase before. When the pace itself was wrong, so was that
-            # phase, and only the plain arrivals are to be trusted.
+            # The fine period rests on the estimate of the window before. If the period was wrong,
+            # so was that estimate, and only the plain arrivals can be trusted.
             self._period_s = fine_s if abs(fine_s / coarse_s - 1.0) < _PACE_DOUBT else coarse_s
             self.rate_hz = 1.0 / self._period_s
             if abs(self.rate_hz / self._nominal_hz - 1.0) > self._tolerance:

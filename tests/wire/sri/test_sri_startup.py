@@ -8,7 +8,7 @@ from cellctl.errors.force import SensorSetupWrong
 from cellctl.errors.link import ReplyTimeout
 from drivers.ftsensor.sri.config import SriConfig
 from drivers.ftsensor.sri.protocol import Reply
-from drivers.ftsensor.sri.startup import AtStartUp, CanStartUp
+from drivers.ftsensor.sri.startup import AtCommandStartUp, CanStartUp
 
 MATRIX = ";".join("(" + ",".join(str(float(i == j)) for j in range(6)) + ")" for i in range(6))
 FORMAT = "(A01,A02,A03,A04,A05,A06);{unit};1;(WMA:1.000000)"
@@ -27,7 +27,7 @@ ANSWERS = {
 def talk(answers: Mapping[str, str | None], **settings: object) -> list[str]:
     """What the driver says when a key missing here is an error and None is silence."""
     config = SriConfig.model_validate({"transport": "tcp", **settings})
-    start_up = AtStartUp(config).run()
+    start_up = AtCommandStartUp(config).run()
     said: list[str] = []
     reply: Reply | None = None
     try:
