@@ -26,7 +26,9 @@ from cellctl.processes.peg_in_hole.verdict.judgement import PegJudgement, PegSea
 from cellctl.processes.peg_in_hole.verdict.lateral import measure_capture
 
 _PRESS_S = 0.1
+"""Length of the first press, which only has to give the search the time at which it begins."""
 _FREE_M_S = 10e-3
+"""Greatest speed over the face, which was touched before."""
 _DOWN = np.array([0.0, 0.0, 1.0])
 
 

@@ -22,7 +22,11 @@ either, unless the circle of the touches is wider."""
 _INWARDS = 1.0
 """In the frame of a run, z of the tip points into the hole."""
 _TWIST_N_M = 2.0
+"""Largest change of a moment while the part is drawn out: what the study allows the insertion of a
+connector (section 1 of the study of insertion by touch)."""
 _SLOW_M_S, _SLOW_M_S2 = 5e-3, 0.05
+"""Speed at which the study retracts from a hole (section 2), and an acceleration that reaches it
+within half a millimetre."""
 _FIRST_M_S = 1e-3
 """Speed of the first stretch. A part that is held is pulled by k v T more until the arm stands:
 18 N with the 120 N/mm and the 150 ms of the fake cells, and 90 N at the speed of the rest."""

@@ -16,6 +16,8 @@ from cellctl.runtime.process import RunContext
 from cellctl.runtime.progress import ProgressBoard
 
 _FOLLOW_MARGIN_M = 2e-3
+"""How far beyond the depth of its hole the tip may follow a press before the loop counts as
+saturated."""
 _MS = 1e-3
 
 

@@ -20,10 +20,15 @@ Array = NDArray[np.float64]
 LIGHT_N = 2.5
 """Pressed with while touching to the sides: friction resists with less than a touch is met at."""
 _LEAST_THRESHOLD_N = 1.0
+"""A light touch needs at least this force beyond friction, however quiet the sensor is."""
 _FACE_MARGIN_RAD = radians(8)
+"""Added to the angle of friction: a force nearer to the axis than that comes from an end face."""
 _SIDE_RATIO = 1.5
+"""Side force over axial force above which a contact is a side; below it an edge is met."""
 _TRAVEL_M = 0.2e-3
+"""Way of a light touch beyond what arm, contact and clearance account for."""
 _SETTLE_S = 0.3
+"""Length of the light press, in which the arm comes to rest before the contact is judged."""
 
 
 class ContactClass(StrEnum):

@@ -16,6 +16,7 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
 _TRIES = 3
+"""How often an edge is given way to before the search takes over."""
 
 Contacts = list[ClassifiedContact]
 """Contacts in their order in time; a cycle keeps them for its record."""

@@ -16,8 +16,12 @@ OUT_OF_BAND_N, OUT_OF_BAND_N_M = 3.0, 0.1
 LEAST_SLOPE = 0.3
 """Rise of the force at the seat over the stiffness of arm and contact."""
 _STAYS = 0.7
+"""Share of side force and moment that stays when the feed is lowered, for a peg that is wedged.
+In a peg that is only jammed they fall together with the feed (section 5.2 of the study)."""
 _FOOT = 0.2
+"""The rise at the seat begins where the force leaves this share of it behind."""
 _LINE_SAMPLES = 20
+"""Fewest samples on the way to which a line of the friction is fitted."""
 _SEAT_ZONE_M, _WAY_M = 0.5e-3, 3e-3
 """How far before its end a feed is slowed by the seat, and how far back from its end the way counts
 for friction."""
@@ -95,9 +99,10 @@ def seat_slope_n_m(samples: Sequence[ContactSample]) -> float | None:
 
 
 def unloaded_depth_m(standing: Standing, stiffness_n_m: float, face_yields_m: float) -> float:
-    """Depth of the tip, which arm and contact have yielded under the force to get beyond.
+    """Depth of the tip as it would be without a force, m below the face.
 
-    Frame A lies deeper than the face by ``face_yields_m``, by what the touches of the face yielded.
+    Under the force arm and contact have yielded, so that the arm reports too great a depth. Frame A
+    lies deeper than the face by ``face_yields_m``, which the touches of the face had yielded.
     """
     return standing.depth_m - standing.axial_n / stiffness_n_m + face_yields_m
 

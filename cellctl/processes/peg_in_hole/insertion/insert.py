@@ -38,16 +38,15 @@ from cellctl.processes.peg_in_hole.insertion.zero_jump import ZeroJump, dropped_
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 from cellctl.processes.peg_in_hole.verdict.lateral import walls_answer
 
-_MOST_RECOVERIES = 3
-_RECOVERY_S = 15.0
-"""From the end of the first feed on."""
+_MOST_RECOVERIES, _RECOVERY_S = 3, 15.0
+"""Recoveries in all, and the time for them from the end of the first feed on (section 5.3)."""
 _GAIN_M = 0.2e-3
 """Depth that a recovery has to win."""
 _SAME_DEPTH_M = 0.1e-3
 """Two feeds that end no farther apart than this have met the same thing."""
 _ASKED_BEFORE_M = 0.5e-3
-"""How far before its seat the sensor is asked whether it still answers: more than by which the seat
-may lie higher than drawn."""
+"""How far before the seat the arm asks whether the sensor still answers: farther than the seat may
+lie higher than drawn."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +54,7 @@ class Fed:
     """An insertion that has come to the depth of the seat."""
 
     depth_m: float
-    """Less what arm and contact give way under the force."""
+    """Depth of the tip below the face, less what arm and contact yield under the force."""
     seat_force_n: float
     seat_slope_n_m: float | None
     held_way_m: float
@@ -72,11 +71,11 @@ class Fed:
 
 
 async def insert(motions: ContactMotions, task: SearchTask, face_yields_m: float) -> Fed:
-    """To the seat, with at most three recoveries that each gain depth.
+    """Feed the peg to its seat, with at most three recoveries that each have to gain depth.
 
-    The touches of the face had yielded by ``face_yields_m``, so that frame A lies deeper than the
-    face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or ``HoleBlocked`` with
-    the figures where the peg stands, ``NotSeated`` where no seat stops it,
+    Arm and face had yielded by ``face_yields_m`` under the touches of the face, so frame A lies
+    deeper than the free face by that. Raises ``KeywayNotFound``, ``PegJammed``, ``PegWedged`` or
+    ``HoleBlocked`` with the figures where the peg stands, ``NotSeated`` where no seat stops it,
     ``ForceActsWithFeed`` or ``ForceDropped``, and ``SensorDead`` where it does not feel the walls.
     """
     if task.fit.keys is not None:
@@ -109,14 +108,14 @@ class _Feed:
     def __init__(self, motions: ContactMotions, task: SearchTask, face_yields_m: float) -> None:
         self._motions, self._task, self._face_yields_m = motions, task, face_yields_m
         self._samples: list[ContactSample] = []
-        # With a sensor that has died, the way by which the seat may lie deeper would be more force
-        # on a stiff arm than the insertion may take.
+        # The feed goes on beyond the drawn seat until a force ends it. With a dead sensor no force
+        # does, and on a stiff arm that way alone makes more force than the insertion may take.
         dead_n = task.cell.stiffness_n_m * SEAT_TOLERANCE_M
         self._to_be_asked = dead_n > task.limits.insertion_n
         """Whether the sensor has to show before the seat that it still answers."""
 
     async def on(self) -> ContactMotion:
-        """A little beyond the seat, so that only a force ends it there."""
+        """Feed to a little beyond the seat, so that only a force can end the feed at it."""
         seat_m, limits, cell = self._task.fit.depth_m, self._task.limits, self._task.cell
         past_m = limits.insertion_n / cell.stiffness_n_m + SEAT_TOLERANCE_M
         if not self._to_be_asked:
@@ -192,7 +191,10 @@ class _Feed:
 async def _help(
     motions: ContactMotions, task: SearchTask, standing: Standing, measure: Recovery
 ) -> None:
-    """Raises ``PegWedged``: pulling harder would only break what is wedged."""
+    """Apply one recovery. Raises ``PegWedged`` instead where the peg is wedged: whatever pushes or
+    pulls harder would only break the part.
+    """
+    # The test of a wedge: the feed is lowered, and side force and moment do not follow it.
     lowered = await motions.press(0.3 * standing.axial_n, 0.2, never)
     if Standing.of(lowered.last).wedged_after(standing):
         raise PegWedged(str(standing))

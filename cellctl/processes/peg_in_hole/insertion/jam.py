@@ -16,6 +16,8 @@ from cellctl.processes.peg_in_hole.plan.task import FitGeometry
 LEAST_AXIAL_N = 2.0
 """With less than this along the axis the ratios are mostly noise."""
 LEAST_DEPTH_M = 0.3e-3
+"""With less depth in the bore the two points of contact are too near to each other to be told
+apart, and the ratio would divide by nearly nothing."""
 
 
 def jam_ratio(

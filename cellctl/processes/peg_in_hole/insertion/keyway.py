@@ -12,18 +12,21 @@ from cellctl.processes.peg_in_hole.faults import KeywayNotFound
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
-_HOLD_N = 5.0
-_FASTEST_RAD_S = radians(3.0)
+_HOLD_N, _FASTEST_RAD_S = 5.0, radians(3.0)
+"""Press during the sweep, and its greatest speed (section 2, S4k)."""
 _SWEEP_RATIO = 1.5
 """How far the sweep goes, over the uncertainty of the turn: that figure is an estimate itself."""
 _BEGUN_M = 0.2e-3
 """A drop by which the keys are seen to have begun to enter."""
 _SETTLE_S = 1.0
+"""Longest time in which the keys centre themselves, and again in which the arm loses its twist."""
 _UNTWISTED_N_M = 0.1
-"""Less about the axis than what the verdict takes for a key that resists, by far."""
+"""Moment about the axis that counts as none: far below what the verdict takes for a key that
+resists."""
 _THROUGH_RATIO = 0.5
 """How much further than the ends of the keys the plug must go, over the depth of the keys."""
 _NEAR_M = 0.5e-3
+"""A plug that stands within this distance of the depth of its keys stands on them."""
 _DAMPING = 1.5
 """Factor of the admittance's damping along z (force/contact/streamed/gains.py)."""
 

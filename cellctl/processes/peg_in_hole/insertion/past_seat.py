@@ -1,9 +1,10 @@
 """A feed that goes on where the seat should have stopped it.
 
-The hole is deeper, the part slips, or the sensor is dead. A force that is felt makes arm and
-contact yield, so that the tip of a good part goes on beyond its seat; but only a force that rises
-with the way is that of a seat. One that stays, of friction or of a sensor that repeats itself with
-noise, would let the arm press with as much more as it stands for.
+Then the hole is deeper than drawn, the part slips in its fingers, or the sensor is dead. Arm and
+contact yield under a force, so the tip of a good part goes on beyond its seat, too. But only a
+force that rises with the travel is that of a seat. A force that stays the same is friction, or the
+last reading of a dead sensor: taken for a seat, it would let the arm press on, and nobody would
+know with how much.
 """
 
 from collections import deque
@@ -21,6 +22,8 @@ from cellctl.processes.peg_in_hole.insertion.jam import rubbing_n
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
 SEAT_TOLERANCE_M = 0.3e-3
+"""A part counts as seated within this distance of the depth by the drawing (section 5.4 of the
+study of insertion by touch)."""
 _IN_A_ROW = 3
 """Samples: fewer are the noise of a force."""
 _STAYS_M = 0.1e-3

@@ -16,10 +16,16 @@ from cellctl.processes.peg_in_hole.plan.task import FitGeometry
 from cellctl.processes.peg_in_hole.search.conditions import LostSupport
 
 _LOWERED, _HALVED = 0.3, 0.5
+"""Share of the force at which the peg stands with which it is pressed while it gives way, and while
+it is wiggled or turned."""
 _GIVE_WAY_S = 1.0
+"""Time for side force and moments to fall to nothing."""
 _WIGGLE_RAD, _WIGGLE_HZ, _WIGGLE_POINTS = radians(0.3), 2.0, 8
+"""Greatest tilt and frequency of the wiggle, and the corners of its circle."""
 _YAW_RAD, _YAW_RAD_S = radians(2), radians(3)
+"""Turn to either side, and its speed, which is that of the sweep for a keyway."""
 _BACK_M = 1e-3
+"""Way back before the second entry."""
 
 
 def _upright(standing: Standing) -> Array:

@@ -24,6 +24,7 @@ _BANDS = 3
 """Parts of the rise at the seat, of which the steepest tells its stiffness: a force that stays lies
 in one of them, or on the border of two."""
 _LEAST_SAMPLES = 3
+"""A feed of fewer samples has no slope to be judged by."""
 
 
 def held_way_m(

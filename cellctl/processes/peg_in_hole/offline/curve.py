@@ -29,6 +29,7 @@ from cellctl.records.files.mcap_reading import RecordedMessage, read_mcap
 
 _MCAP_MAGIC = b"\x89MCAP"
 _FEWEST = 20
+"""A file with fewer samples is no curve of an insertion."""
 
 Motion = tuple[int, MotionKind]
 

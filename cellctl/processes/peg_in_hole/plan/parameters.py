@@ -8,20 +8,21 @@ from dataclasses import dataclass
 from math import radians
 from typing import Any
 
+from cellctl.force.contact.streamed import speeds
+from cellctl.force.contact.streamed.gains import LoopFigures
+from cellctl.force.contact.streamed.speeds import DETECTION_S
 from cellctl.processes.peg_in_hole.plan.derived import Derived
 from cellctl.processes.peg_in_hole.plan.task import SearchTask
 
-DETECTION_S = 0.03
-"""A lost or a new contact is believed after so long."""
 _TOUCH_N = 8.0
 """Force by which a contact may grow, and with which a search presses, where the recipe allows
 it."""
-_FASTEST_TOUCH_M_S = 3e-3
 _FASTEST_SLIDE_M_S = 5e-3
+"""No slide over a face is faster, however wide the catch radius is (section 3.2)."""
 _SIDE_N = 5.0
 """Force with which the peg is held against the outer face of a plug (section 3.6)."""
 STANDS_M = 0.05e-3
-"""A peg that is carried and goes no deeper than this stands."""
+"""A peg that something carries stands as long as it goes no deeper than this."""
 _LONGER, _SETTLE_S = 1.5, 0.5
 """A motion that only a force drives may take so much longer than its way at full speed."""
 
@@ -52,8 +53,7 @@ class SearchParameters:
 
 def touch_speed_m_s(stiffness_n_m: float, dead_time_s: float, growth_n: float = _TOUCH_N) -> float:
     """Greatest speed at which a contact grows by ``growth_n`` before the arm has answered."""
-    speed = growth_n / (stiffness_n_m * (dead_time_s + DETECTION_S))
-    return min(_FASTEST_TOUCH_M_S, speed)
+    return speeds.touch_speed_m_s(LoopFigures(stiffness_n_m, dead_time_s), growth_n)
 
 
 def search_parameters(task: SearchTask) -> SearchParameters:

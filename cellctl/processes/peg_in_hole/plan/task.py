@@ -9,7 +9,9 @@ _MM = 1e-3
 _CHAMFER_MARGIN_M = 0.1 * _MM
 """Part of the width of the chamfers that does not count: edges are not sharp."""
 _ENTRY_MARGIN_M = 0.3 * _MM
+"""A peg that is deeper than both chamfers by this has entered the bore (section 2, S4)."""
 _SLOW_LOOP_N_S_M = 5e3
+"""Stiffness times dead time above which a cell gets the longer of the two times."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,8 +27,11 @@ from cellctl.runtime.steps import StepSpec
 _HIGH_M = 3e-3
 """Height over the face: the chirp in free air swings by a third of it."""
 _FREE_M = 1e-3
+"""Amplitude of the chirp in free air (section 4.5 of the study of insertion by touch)."""
 _TRAVEL_M = _HIGH_M + 2e-3
+"""The face has to be met on this way; it was touched before, so 2 mm of room are plenty."""
 _FREE_M_S = 10e-3
+"""Speed over the face, which was touched before."""
 
 
 async def measure_loop_on_cell(

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from cellctl.cell.contact_motion.commissioning import CommissionedLoop
 
 SIGMA_PERCENT = 10.0
+"""Largest standard deviation of the stiffness. The study asks for the stiffness to a tenth (section
+7 of the study of insertion by touch)."""
 HYSTERESIS_MM = 0.02
 """About the repeatability of an arm: more is play in fingers or fixture."""
 STIFFNESS, DEAD_TIME = "stiffness", "dead time"

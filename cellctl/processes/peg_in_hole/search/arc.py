@@ -21,13 +21,19 @@ from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 Array = NDArray[np.float64]
 
 _BELOW_FACE_M = 2e-3
+"""Depth below the face at which the side of the plug is touched (section 3.6)."""
 _CLEAR_M = 3e-3
+"""Distance that is kept from the plug between two touches, and by which a touch goes beyond the
+place where the plug is expected."""
 _NEAR_M = 0.3e-3
+"""Height over the face at which the tip goes from touch to touch."""
 _BESIDE_M = 1e-3
 """How far beside the plug the tip goes down: on a stiff arm the slide tells its edge to 0.4 mm."""
 _FREE_M_S = 20e-3
-_ARC_RAD = radians(120)
-_RESIDUAL_M = 0.1e-3
+"""Greatest speed through free air; the motion itself goes slower where it might meet something."""
+_ARC_RAD, _RESIDUAL_M = radians(120), 0.1e-3
+"""Length of the arc that is touched, and largest residual of the circle through it (section
+3.6)."""
 
 
 class ArcSearch(SearchStrategy):

@@ -6,18 +6,20 @@ import numpy as np
 
 from cellctl.cell.contact_motion.motion_rules.ends import least_change_n
 from cellctl.cell.contact_motion.motions import ContactSample
+from cellctl.force.contact.streamed.speeds import DETECTION_S, LOST_SHARE
 from cellctl.processes.peg_in_hole.first_contact.classify import (
     ContactClass,
     class_by_force,
     light_threshold_n,
 )
-from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S, STANDS_M
+from cellctl.processes.peg_in_hole.plan.parameters import STANDS_M
 from cellctl.processes.peg_in_hole.plan.task import CellFigures
 
 Stop = Callable[[ContactSample], bool]
 
 _ENTERED_S = 0.1
-_LOST_RATIO = 0.3
+"""A peg has entered when it stays below the depth of entry for this time (section 2, S4, of the
+study of insertion by touch)."""
 
 
 def depth_m(sample: ContactSample) -> float:
@@ -49,7 +51,7 @@ class Stands:
     """Holds once something has carried the peg for a while, and it has gone no deeper."""
 
     def __init__(self, press_n: float, stand_s: float) -> None:
-        self._least_n, self._stand_s = _LOST_RATIO * press_n, stand_s
+        self._least_n, self._stand_s = LOST_SHARE * press_n, stand_s
         self._begin: ContactSample | None = None
 
     def __call__(self, sample: ContactSample) -> bool:
@@ -69,7 +71,7 @@ class LostSupport:
     """
 
     def __init__(self, press_n: float) -> None:
-        self._least_n = _LOST_RATIO * press_n
+        self._least_n = LOST_SHARE * press_n
         self.begin: ContactSample | None = None
 
     def __call__(self, sample: ContactSample) -> bool:
@@ -83,11 +85,12 @@ class LostSupport:
 
 
 class Bottomed:
-    """Holds once the face falls away before a slide no longer as steeply as before.
+    """Holds once the face in front of a slide stops falling away: the bottom of a valley is
+    reached.
 
-    It carries the peg with less than the press as long as the arm follows it downwards, and with
-    more as soon as it rises: on a flank that is as steep as the one before with so much more that
-    the end must not wait for that.
+    While the arm follows a falling face, the face carries less than the press; as soon as it rises,
+    it carries more. On a flank as steep as the one before it would carry so much more that the
+    slide has to end at the first rise of the force.
     """
 
     def __init__(self) -> None:
@@ -104,11 +107,11 @@ class Bottomed:
 def against_a_wall(press_n: float, cell: CellFigures) -> Stop:
     """Holds when what carries the peg pushes sideways harder than the friction of a face could.
 
-    A stiff arm that is pressed down a chamfer meets more and more of it from the side, up to one
-    and a half times the press: it has to be let go before. What only guides a sinking peg is the
-    wall of its bore.
+    A stiff arm that presses down a chamfer is pushed sideways more and more, up to one and a half
+    times the press, and has to be let go before. A peg with a side force that nothing carries from
+    below is different: it sinks, guided by the wall of its bore.
     """
-    friction_n, carried_n = light_threshold_n(cell, press_n), _LOST_RATIO * press_n
+    friction_n, carried_n = light_threshold_n(cell, press_n), LOST_SHARE * press_n
 
     def condition(sample: ContactSample) -> bool:
         across_n = float(np.hypot(*sample.force_n[:2]))

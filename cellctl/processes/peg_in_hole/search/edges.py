@@ -12,7 +12,10 @@ from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, Felt, TouchProbe
 Array = NDArray[np.float64]
 
 SLIDE_M_S = 5e-3
+"""Speed of the slide to the first edge of a plug (section 3.6 of the study of insertion by
+touch)."""
 _INSIDE_M = 0.5e-3
+"""How far inside an edge the face is touched again."""
 _BEHIND_M = 0.3e-3
 """How far behind a flank the peg is put down again; scratches and burrs are narrower."""
 

@@ -25,18 +25,24 @@ from cellctl.processes.peg_in_hole.plan.task import SearchTask
 Array = NDArray[np.float64]
 
 _OVER_PLANE_M = 0.4e-3
+"""Height over the predicted plane from which a touch begins (S1b)."""
 _BEYOND_M = 2e-3
+"""How far beyond the deepest place that is expected a touch goes before the face is absent
+(S1b)."""
 _SLIP_M, _WAY_RATIO = 0.5e-3, 2.0
-"""A touch that goes on in contact for so long, and for so many times the way in which the arm's
-stiffness makes the force of a touch, makes the part slip."""
+"""A part has slipped in its fingers when a touch goes on in contact for this way, and for this
+multiple of the way on which the stiffness of the cell makes the force of a touch."""
 _FELT_N, _FELT_SIGMAS = 1.0, 5.0
 """Least axial force of a touch, in newtons and in standard deviations: in the air none is so
 great."""
-_MOST_RESIDUAL_M = 0.1e-3
-_MOST_TILT_RAD = radians(3)
+_MOST_RESIDUAL_M, _MOST_TILT_RAD = 0.1e-3, radians(3)
+"""Largest distance of the fourth touch from the plane of the others, and largest tilt of that
+plane; beyond them the face is refused (S1b)."""
 _FREE_M_S = 20e-3
+"""Greatest speed from touch to touch; the motion itself goes slower where it might meet
+something."""
 CLEAR_M = 1e-3
-"""The tip is left so high over the face when it was touched."""
+"""Height over the face at which the tip is left after the touches."""
 _CLEAR_M = 3e-3
 """Height over a plug that stands proud of the touched panel."""
 _UPRIGHT = np.zeros(3)
@@ -62,8 +68,8 @@ class TouchedFace:
     slope_sigma: float
     """Standard deviation of each component of ``slope``."""
     yields_m: float = 0.0
-    """How far arm and face had yielded to the touches: a tip that the face does not carry yet is so
-    much less deep."""
+    """How far arm and face had yielded under the touches: the plane lies deeper than the free face
+    by this."""
 
     @property
     def tilt_rad(self) -> float:
@@ -111,8 +117,8 @@ async def touch_face(motions: ContactMotions, task: SearchTask, plan: FacePlan) 
 
 
 def _above_m(apart_m: float) -> float:
-    """Height from which a face that is tilted by as much as is allowed is still met from above,
-    so far from where its height is known."""
+    """Height over a point of known height from which a touch ``apart_m`` beside it still comes from
+    above, if the face is tilted as far as is allowed."""
     return _OVER_PLANE_M + apart_m * float(np.tan(_MOST_TILT_RAD))
 
 
@@ -196,8 +202,9 @@ def _require_no_slip(
 ) -> None:
     """Raise ``PegSlipped`` for a touch that met something and went on without ``force_n``.
 
-    An arm that presses on what stays where it is meets more force with all of its way. One that
-    does not pushes the part into the fingers, with just the force of the grip.
+    An arm that presses on something fixed feels more force with every bit of travel. Where the
+    force stays the same, the arm pushes the part back into its fingers, with just the force of the
+    grip.
     """
     least_n = max(_FELT_N, _FELT_SIGMAS * samples[-1].force_sigma_n)
     pushed = list(takewhile(lambda one: -one.force_n[2] >= least_n, reversed(samples)))

@@ -13,6 +13,7 @@ _LEFT_AFTER_TOUCH = 0.02
 """Share of the probability that stays where a touch found no hole. Not 0: the arm was not exactly
 where it believed to be."""
 _EXHAUSTED = 0.01
+"""Share of the first belief that may be left unvisited when the search is over."""
 _SIGMAS_OF_P99 = 3.035
 """Radius that holds 99 % of a round Gaussian, in standard deviations of one axis."""
 _FEWEST, _MOST = 61, 401
@@ -24,6 +25,7 @@ class HoleMap:
 
     def __init__(self, uncertainty_m: float, catch_m: float) -> None:
         """``uncertainty_m``: radius that holds the hole in 99 of 100 cases."""
+        # The hole lies within the radius in 99 of 100 cases; the margin is that of section 3.5.
         self.reach_m = 1.15 * uncertainty_m
         cells = int(np.clip(np.ceil(4 * self.reach_m / catch_m), _FEWEST, _MOST)) | 1
         self.axis_m: Array = np.linspace(-self.reach_m, self.reach_m, cells)

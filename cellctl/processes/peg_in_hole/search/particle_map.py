@@ -17,12 +17,15 @@ Array = NDArray[np.float64]
 
 _TOWARDS = np.array([1.0, 0.0])
 _DIP_SIGMA_M = 0.08e-3
+"""Standard deviation of a dip about what the map expects (section 3.5)."""
 _OUTLIER = 0.003
 """Likelihood that is left to a place that a touch speaks against: a touch may be wrong."""
 _KNOWN_M = 0.12e-3
-_MOST_TOUCHES = 16
-_ROUNDS = 4
+"""Standard deviation of the place at which a local spiral takes over: its radius is twice that."""
+_MOST_TOUCHES, _ROUNDS = 16, 4
+"""Touches of one round, and rounds. Simulated, 9 to 16 touches found the hole (section 3.3)."""
 _PARTICLES = 500
+"""Places that stand for the belief while the next touch is chosen: enough for a stable choice."""
 _PLACES = 15
 """Places for the next touch, along each side of the map."""
 

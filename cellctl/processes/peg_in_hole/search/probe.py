@@ -27,15 +27,18 @@ Array = NDArray[np.float64]
 
 UPRIGHT = np.zeros(3)
 _LIFT_M = 0.3e-3
+"""Lift between two touches (section 1 of the study of insertion by touch)."""
 _FREE_M_S = 20e-3
+"""Greatest speed through free air; the motion itself goes slower where it might meet something."""
 _DIP_M = 0.1e-3
-"""Lower than this beneath the face an upright peg stands on no face."""
+"""An upright peg that is deeper than this below the face does not stand on the face."""
 _LET_GO = 3
-"""A peg that goes deeper each time is let go so often."""
+"""How often a peg that goes deeper each time is let go."""
 TOUCH_SHARE = 0.5
 """Share of the press at which a touch ends. Until the arm has answered the force may grow by a
 whole press, and stays within the one and a half presses that a search may make."""
 _LOCAL_RADIUS_M = 0.25e-3
+"""Radius of the spiral round a place that a strategy has found (section 3.4)."""
 
 
 class Met(StrEnum):

@@ -9,6 +9,7 @@ from cellctl.processes.peg_in_hole.search.probe import UPRIGHT, TouchProbe
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy
 
 _PASSES = 4
+"""Spirals over the same place (section 3.6 of the study of insertion by touch)."""
 
 
 class SpiralSearch(SearchStrategy):

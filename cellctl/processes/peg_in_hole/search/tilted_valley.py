@@ -111,6 +111,7 @@ class _Valley:
             if wall_m is None or self._arrived:
                 return wall_m
             at_m = wall_m
+            # Near the wall the valley is at its deepest, so a fixed share of the full dip serves.
             half_m = 0.3 * self._full_m
         return at_m
 
@@ -135,7 +136,12 @@ class _Valley:
         return np.asarray((sides_m[0] + sides_m[1]) / 2)
 
     async def _wall(self, at_m: Array) -> Array | None:
-        """Forward until the dip has fallen to half of its greatest."""
+        """Slide forward until the dip has fallen to half of its greatest; the place (2,) of the
+        wall.
+
+        None where nothing has ended the slide. The speed is 1.25 times that of a touch, and the
+        next crossing looks for 0.3 of the full dip (both section 3.4).
+        """
         begin_m = at_m
         for _ in range(_LET_GO):
             stop = _WallReached(self)

@@ -13,9 +13,12 @@ from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedTask
 MARGIN_M = 0.1e-3
 """How much farther than drawn a wall may stand."""
 _PRESS_MORE = 3.0
-"""By how many such changes more the peg is pressed to see whether the sensor answers."""
+"""How much more the peg is pressed to see whether the sensor answers, in least changes of a force:
+three times what has to be felt."""
 _ANSWERS_S = 1.0
+"""Longest time for the answer, and for the way back to the lighter press."""
 _REPEATABLE_M = 20e-6
+"""Repeatability of an arm (section 1 of the study of insertion by touch)."""
 
 
 class NothingFelt:

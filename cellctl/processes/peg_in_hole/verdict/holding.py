@@ -8,13 +8,20 @@ from cellctl.cell.contact_motion.motions import ContactMotions, ContactSample, E
 from cellctl.processes.peg_in_hole.plan.task import KeyGeometry, SearchTask
 
 _PRESS_N = 2.0
+"""Light press during the tests, as in the pushes to the sides (section 5.4 of the study of
+insertion by touch)."""
 _TURN_RAD_S = radians(1.0)
+"""Speed of a turn: at this pace the moment of a key grows slowly against the dead time of the
+arm."""
 MET_N_M = 0.4
 """Far above what friction at the wall makes, far below what bends a key."""
 _BEYOND_RAD = radians(1.5)
 """What arm and fingers yield under that moment, and what the attitude is uncertain by."""
 _MARGIN_M = 0.3e-3
+"""Way of a pull beyond what arm and contact yield under it. A part that is held does not come that
+far."""
 _SETTLE_S = 0.5
+"""Length of the press before the turns and after the pull, in which the arm comes to rest."""
 
 
 def telling_turn_rad(keys: KeyGeometry) -> float:
@@ -45,7 +52,7 @@ async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeomet
 
 
 async def pull_that_holds_n(motions: ContactMotions, task: SearchTask, pull_n: float) -> float:
-    """The pull that the part has held, N; as much as was felt where it came along."""
+    """The pull in N that the part has held; if it came along, only what was felt then."""
     way_m = pull_n / task.cell.stiffness_n_m + _MARGIN_M
     pulled = await motions.touch(np.array([0.0, 0.0, -1.0]), way_m, pull_n)
     held_n = float(pulled.last.force_n[2])

@@ -25,11 +25,11 @@ from cellctl.processes.peg_in_hole.verdict.evidence import LateralCapture
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 from cellctl.processes.peg_in_hole.verdict.yielding import yielded_m
 
-_PRESS_N = 2.0
-_FASTEST_M_S = 0.5e-3
+_PRESS_N, _FASTEST_M_S, _LEAST_PUSH_N = 2.0, 0.5e-3, 3.0
+"""Press along the axis during the pushes, their greatest speed, and their least force (section 5.4,
+item 3, of the study of insertion by touch)."""
 _SPARE_SHARE = 0.5
-"""Share of the force between push and limit that a push may take until the arm has answered."""
-_LEAST_PUSH_N = 3.0
+"""Share of the force between push and limit by which a push may grow until the arm has answered."""
 _SETTLE_S = 1.0
 """The arm comes back by what it had yielded under the force of the seat."""
 

@@ -15,6 +15,7 @@ from cellctl.cell.contact_motion.motions import ContactSample
 _FROM_SHARE = 0.4
 """Share of the greatest force from which its rise counts: by then the peg leans on its wall."""
 _LEAST_SAMPLES = 4
+"""With fewer samples a slope is chance, and the stated stiffness is taken."""
 
 
 def yielded_m(
