@@ -1,7 +1,8 @@
 """The contract of the stop channel: in memory, and the SIASUN driver on its fake controller."""
 
-from collections.abc import Iterator
-from contextlib import AsyncExitStack
+from collections.abc import Callable, Iterator
+from contextlib import AbstractAsyncContextManager, AsyncExitStack
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -75,13 +76,15 @@ class TestInProcessStopChannel(StopChannelContract):
 
 class TestSiasunStopChannel(StopChannelContract):
     driver = SiasunStopChannel
+    rig: ClassVar[Callable[..., AbstractAsyncContextManager[Rig | JobRig]]] = staticmethod(sjl_rig)
+    """Makes the other end."""
 
     @pytest.fixture
     def bench(self) -> Iterator[StopBench]:
         with LoopThread() as thread:
             stack = AsyncExitStack()
             rig = thread.run(
-                stack.enter_async_context(sjl_rig(channels=("GRD",), stands_deg=TURNED_DEG))
+                stack.enter_async_context(self.rig(channels=("GRD",), stands_deg=TURNED_DEG))
             )
             bench = SiasunBench(thread, rig)
             yield bench
@@ -89,19 +92,7 @@ class TestSiasunStopChannel(StopChannelContract):
             thread.run(stack.aclose())
 
 
-class TestSiasunStopChannelOnItsJobs(StopChannelContract):
+class TestSiasunStopChannelOnItsJobs(TestSiasunStopChannel):
     """The same channel, with the shipped job files at the other end."""
 
-    driver = SiasunStopChannel
-
-    @pytest.fixture
-    def bench(self) -> Iterator[StopBench]:
-        with LoopThread() as thread:
-            stack = AsyncExitStack()
-            rig = thread.run(
-                stack.enter_async_context(job_rig(channels=("GRD",), stands_deg=TURNED_DEG))
-            )
-            bench = SiasunBench(thread, rig)
-            yield bench
-            bench.channel.close()
-            thread.run(stack.aclose())
+    rig = staticmethod(job_rig)

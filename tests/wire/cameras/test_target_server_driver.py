@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cellctl.errors.base import CellError
 from cellctl.errors.link import (
     ConnectTimeout,
     DeviceFault,
@@ -128,21 +129,18 @@ async def test_error_of_the_server() -> None:
             await device.measure()
 
 
-async def test_an_unexpected_close_fails_one_request_only() -> None:
+@pytest.mark.parametrize(
+    ("reply", "fault"),
+    [(None, LinkLost), (b"", ReplyTimeout)],
+    ids=["an unexpected close", "silence"],
+)
+async def test_one_request_fails_and_the_next_gets_its_own_reply(
+    reply: bytes | None, fault: type[CellError]
+) -> None:
     server = Server()
     async with serving(read_request, server) as port, tracker(port) as device:
-        server.script = lambda request: None
-        with pytest.raises(LinkLost):
-            await device.measure()
-        server.script = server.answer
-        assert len(await device.measure()) == 1
-
-
-async def test_silence_times_out_and_a_late_reply_is_not_taken_for_the_next() -> None:
-    server = Server()
-    async with serving(read_request, server) as port, tracker(port) as device:
-        server.script = lambda request: b""
-        with pytest.raises(ReplyTimeout):
+        server.script = lambda request: reply
+        with pytest.raises(fault):
             await device.measure()
         server.script = server.answer
         assert len(await device.measure()) == 1

@@ -19,6 +19,7 @@ _FORCE_SPREAD = 0.25 / 3**0.5
 _TILT_RAD = float(np.radians(0.15))
 """Tilt of a plug in the gripper, one sigma."""
 _SIGMAS = 4.0
+"""Half width of the band of good insertions, in standard deviations."""
 
 
 class InsertionPhase(Enum):

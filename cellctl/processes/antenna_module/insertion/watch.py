@@ -15,6 +15,7 @@ from cellctl.processes.antenna_module.insertion.limits import (
 )
 
 _TREND_S = 0.1
+"""Stretch of samples from which it is told whether the axial force rises."""
 
 
 class TripCause(Enum):

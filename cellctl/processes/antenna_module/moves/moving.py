@@ -18,9 +18,9 @@ FREE = WrenchTolerance(force_n=15.0, moment_n_m=4.0)
 """What gripper and module make of speeding up and slowing down, twice 1.5 kg at 0.4 m/s², and a few
 newtons of hoses on a lever of 0.25 m."""
 NEAR = WrenchTolerance(force_n=5.0, moment_n_m=1.5)
-"""Slowly beside something that may be touched."""
-SLOW_M_S = 0.02
-SLOW_M_S2 = 0.05
+"""Tolerance of slow moves beside something that may be touched."""
+SLOW_M_S, SLOW_M_S2 = 0.02, 0.05
+"""Speed and acceleration of these moves: the load makes a fraction of a newton of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,13 +10,15 @@ from cellctl.processes.antenna_module.faults.plugging import PluggingError
 from cellctl.processes.antenna_module.pushing.attempt import PushAttempt
 
 _log = log.get(__name__)
-SPEED_M_S = 1e-3
-ACCELERATION_M_S2 = 0.01
+SPEED_M_S, ACCELERATION_M_S2 = 1e-3, 0.01
+"""So slow that a plug which is held is pulled with little more than the limit until the arm
+stands."""
 PULL_RATIO = 1.7
 """Contacts need up to so many times the force of mating to come apart: measured on connectors to
 MIL-DTL-55302G by their makers, 1.07 N against 0.62 N."""
-SIDE_N = 10.0
-MOMENT_N_M = 0.5
+SIDE_N, MOMENT_N_M = 10.0, 0.5
+"""How far side force and moments may grow beyond those that press now: a reading may be off its
+mean by this much."""
 
 
 async def back_out(attempt: PushAttempt, fault: CellError, stand_off_m: float) -> None:

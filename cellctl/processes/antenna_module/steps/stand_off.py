@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from cellctl.cell.guarded_motion.guarded_moves import TARE_S
 from cellctl.cell.guarded_motion.kept_zero import Pressed, keep_zero
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.clock import now_s
@@ -13,7 +14,6 @@ from cellctl.processes.antenna_module.pushing.way import InsertionWay
 from cellctl.processes.antenna_module.record import keys
 from cellctl.processes.antenna_module.state import OverSocket, Planned
 
-_TARE_S = 0.5
 _TOUCH_N = 3.0
 """What arm and hoses may change of the raw force between two places in one orientation."""
 
@@ -66,10 +66,10 @@ async def _tare(planned: Planned) -> None:
     sensor_T_plug = arm.flange_T_sensor.inv() * flange_T_plug
     await arm.guard.set_wrench_frame(sensor_T_plug)
     await settle(arm.guard)
-    await arm.guard.tare(_TARE_S)
+    await arm.guard.tare(TARE_S)
     # What is taken as zero is not seen any more: a plug that touches already would begin with a
     # hidden force. Hanging free it makes the force that it made over the tray.
-    felt_n = arm.guard.samples(now_s() - _TARE_S).raw[:, :3].mean(axis=0)
+    felt_n = arm.guard.samples(now_s() - TARE_S).raw[:, :3].mean(axis=0)
     changed_n = float(np.linalg.norm(felt_n - planned.module.hanging_n))
     if not changed_n <= _TOUCH_N:
         raise TareImplausible(

@@ -16,7 +16,10 @@ from cellctl.processes.antenna_module.steps.contact import contact
 from cellctl.records.figures import Limit
 
 PULL_SPEED_M_S = 0.2e-3
+"""So slow that the pull grows in fine steps: a plug that does not hold is noticed before it is
+out."""
 _AXIAL = 2
+"""Index of the force along the insertion axis."""
 _ROUNDING_M = 1e-9
 """What sums of fine steps are off by; a last step of so much would move nothing."""
 

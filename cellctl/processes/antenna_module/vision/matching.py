@@ -15,7 +15,10 @@ from cellctl.processes.antenna_module.connector.arrangement import MIRROR
 from cellctl.processes.antenna_module.connector.connector import Connector
 
 _PAIRS = 6
+"""Pairs of contacts from which placements are made: contacts that are missing spoil only some of
+them."""
 _MOST_STARTS = 200
+"""Most placements that are tried, the likeliest first."""
 _LENGTH_TOLERANCE = 0.04
 """Tolerance of the distance of two contacts, relative: a wrong scale is judged later, and has to be
 found for that."""

@@ -45,8 +45,9 @@ from cellctl.processes.antenna_module.vision.plane import MeasuringPlane, PlaneC
 from cellctl.vision.camera.image_checks import check_image
 from cellctl.vision.camera.single_camera import SingleCamera
 
-SIGMA_LIMIT_M = 3e-6
-YAW_LIMIT_RAD = float(np.radians(0.02))
+SIGMA_LIMIT_M, YAW_LIMIT_RAD = 3e-6, float(np.radians(0.02))
+"""Largest standard deviations with which a look counts as certain: of a place in the plane, each
+axis, and of a turn about its normal."""
 _LEAST_SHARE = 0.6
 """Share of the contacts that must be found and clean for the connector to count as this one; the
 others may then be named as missing, bent or hidden."""
@@ -60,6 +61,7 @@ next one does not."""
 _MARK_REACH = 0.25
 """How far a mark is looked for, over its diameter: marks do not bend."""
 _MARK_TRUE_POSITION_M = 5e-6
+"""How far a mark is off its place on the gripper, standard deviation."""
 _BORE_SEEN_M, _BORE_SIGMA_M = 0.25e-3, 0.1e-3
 """By how much deeper than it is the rim of a bore appears to lie, and the standard deviation of
 that. The far wall below the rim is lit and is taken for a part of the funnel, and blur mixes the
@@ -79,10 +81,13 @@ def measure_connector(
 
     Contacts that are missing, bent or hidden do not raise here, ``require_sound`` judges them.
     """
+    # Where the connector may be: the marks of the gripper, if there are any, say it best.
     check_image(image, camera.image_size, "image")
     plane = calibration.before(camera)
     seen_marks = None if marks is None else _marks_in(image, plane, calibration, marks)
     expected = _expectation(plane, calibration, marks, seen_marks)
+    # Whether it is this connector at all, and not its mirror image. Nothing is measured before
+    # that: a fit to the wrong contacts may be a good one.
     rim_plane = plane.at_height(-seen_depth_m(connector))
     pattern = contact_pattern(connector)
     least = int(np.ceil(_LEAST_SHARE * len(pattern.names)))
@@ -95,10 +100,13 @@ def measure_connector(
     extra = surplus(image, rim_plane, pattern, candidates, connector.outline_m)
     if extra >= _SURPLUS:
         raise WrongConnector(f"{extra} more contacts than the file has")
+    # Which way round it lies, and the measurement itself.
     placement = choose(candidates, expected, chiral=False)
     found = fit_pattern(image, rim_plane, pattern, placement, candidates.spots_m)
     if found is None or np.count_nonzero(found.fit.used) < least:
         raise WrongConnector(f"fewer than {least} contacts are clean and in their places")
+    # What makes a measurement wrong although it looks good: light from one side moves all rims
+    # alike, and a wrong height shows in the scale.
     rims = [
         feature.circle
         for feature, used in zip(found.features, found.fit.used, strict=True)

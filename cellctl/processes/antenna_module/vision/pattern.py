@@ -28,6 +28,7 @@ _COMMON_PX = 0.007
 """Standard deviation of what light and walls move all features of an image together, per axis: with
 noise averaged away, this is left on rendered pins."""
 _SUPPORT = 0.6
+"""Share of all directions with an edge from which a circle counts as complete."""
 _LOST = 4.0
 """Scatter of a circle's edges over that of the others: more is another thing than its rim."""
 _STRENGTH = 0.35
@@ -123,36 +124,19 @@ def fit_pattern(
     placed = pattern.positions_m @ rotation(placement.yaw_rad).T + placement.shift_m
     starts = np.where(placement.spot[:, None] >= 0, spots_m[placement.spot], placed)
     radius_m = pattern.diameter_m / 2.0
-    coarse = [
-        circle_near(
-            image,
-            plane,
-            start,
-            radius_m,
-            sigma=_PRIOR,
-            share=_COARSE,
-            bright=pattern.bright,
-        )
-        for start in starts
-    ]
+    search = partial(circle_near, image, plane, bright=pattern.bright)
+    coarse = [search(start, radius_m, sigma=_PRIOR, share=_COARSE) for start in starts]
     radii = [c.radius_m for c in coarse if c is not None and c.support > _SUPPORT]
     if len(radii) < 3:
         return None
     # All contacts are made on one machine and lit by one ring. The radius that they show here is a
     # better guess for each of them than the drawing, which knows neither light nor blur.
     alike_m = float(np.median(radii))
-    fine = [
-        circle_near(
-            image,
-            plane,
-            start if circle is None else circle.centre_m,
-            alike_m,
-            sigma=_ALIKE,
-            share=_FINE,
-            bright=pattern.bright,
-        )
+    begins = [
+        start if circle is None else circle.centre_m
         for start, circle in zip(starts, coarse, strict=True)
     ]
+    fine = [search(begin, alike_m, sigma=_ALIKE, share=_FINE) for begin in begins]
     fine = _found_again(image, plane, pattern, fine, alike_m)
     if pattern.chamfer_m > 0:
         fine = [_tip(image, plane, pattern, circle) for circle in fine]

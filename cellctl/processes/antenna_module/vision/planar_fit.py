@@ -14,11 +14,15 @@ from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.vision.matching import rigid, rotation
 
 REJECT = 6.0
+"""Residual in standard deviations beyond which a point is left out: it is bent or not this
+contact."""
 _HUBER = 3.5
 """Residual, in standard deviations of a point with two coordinates, beyond which a point weighs
 less: one good contact in 500."""
 _ROUNDS = 8
+"""Rounds of re-weighting."""
 _FEWEST = 3
+"""Two points give place and turn; the third says whether they fit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from cellctl.cell.contact_motion.motions import ContactMotion, ContactSample, Ended, never
 from cellctl.force.contact.spirals import spiral_points
+from cellctl.force.contact.streamed.speeds import DETECTION_S
 from cellctl.processes.peg_in_hole.plan.choice import SearchName
-from cellctl.processes.peg_in_hole.plan.parameters import DETECTION_S
 from cellctl.processes.peg_in_hole.search.conditions import Bottomed, Stop
 from cellctl.processes.peg_in_hole.search.probe import Felt, TouchProbe
 from cellctl.processes.peg_in_hole.search.strategy import SearchStrategy

@@ -15,6 +15,7 @@ from cellctl.processes.antenna_module.chain.teaching.tool_turn import (
 )
 
 _SCATTER_LIMIT_M = 30e-6
+"""Largest standard deviation of the plate's place over the looks, each axis."""
 _SIGMA_LIMIT_M = 4e-6
 """A device that has moved by 20 µm must stand out of it."""
 HALF_TURN_RAD = float(np.pi)

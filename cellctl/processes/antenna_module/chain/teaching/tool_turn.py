@@ -19,7 +19,9 @@ from cellctl.calibration.checks import (
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.antenna_module.faults.calibration import TurnInvalid
 
-_MIN_SPAN_RAD = float(np.radians(180))
+_WIDEST_GAP_RAD = float(np.radians(180))
+"""Largest gap between neighbouring angles: with all of them on one side of the turn its centre and
+the offset are known only together."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,8 +100,7 @@ def calibrate_tool_turn(
         raise TurnInvalid(f"{len(stops)} angles, at least 3 needed")
     angles = np.array([stop.angle_rad for stop in stops])
     gap = _largest_gap(angles)
-    # With all angles on one side, centre and offset are known only together.
-    if gap > _MIN_SPAN_RAD + 1e-6:
+    if gap > _WIDEST_GAP_RAD + 1e-6:
         raise TurnInvalid(f"angles leave a gap of {np.degrees(gap):.0f}°, allowed 180°")
     seen = np.array([stop.seen_m for stop in stops])
     # A camera that looks against the axis sees the joint turn the other way.

@@ -12,6 +12,7 @@ from cellctl.geometry.pose import Array
 from cellctl.processes.antenna_module.vision.contact_fit.rim_edges import DIRECTIONS, UNIT, RimEdges
 
 _ROUNDS = 12
+"""Most rounds of re-weighting."""
 _TUKEY = 4.7
 """Residual in standard deviations from which an edge does not count at all; the usual figure, which
 costs 5 % of the information where all errors are normal."""
@@ -23,6 +24,7 @@ edges are left."""
 _INDEPENDENT_PX = 1.7
 """Distance along the rim at which the errors of two edges are independent: they share pixels."""
 _FEWEST = 12
+"""Least number of edges of a circle, out of 96 directions."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,6 +58,8 @@ def fit_circle(
     # have half of the rim taken for outliers.
     centre = centre + _opposite_middle(edges, centre)
     radius = float(np.median(np.linalg.norm(edges.points_m - centre, axis=1)))
+    # Least squares that are weighted anew in each round, with Tukey's biweight, for centre and
+    # radius. The prior of the radius is one more observation.
     normal = np.eye(3)
     weight = np.ones(len(edges.points_m))
     for _ in range(_ROUNDS):

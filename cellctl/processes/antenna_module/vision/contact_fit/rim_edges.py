@@ -11,14 +11,18 @@ from cellctl.interfaces.stereo_camera import Image
 from cellctl.processes.antenna_module.vision.plane import MeasuringPlane
 
 DIRECTIONS = 96
+"""Rays round a contact. A rim of 20 px has a circumference of 126 px, so neighbours share
+pixels."""
 _ANGLES: Array = np.linspace(0.0, 2.0 * np.pi, DIRECTIONS, endpoint=False)
 UNIT: Array = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
 _STEP_PX = 0.5
+"""Distance of the samples along a ray."""
 _SMOOTH_PX = 1.0
 """Along the ray only: across it the rim is curved, and smoothing would move it inwards."""
 _WEAKEST = 0.3
 """Edges below this share of the typical strength are noise or dirt."""
 _MARGIN_PX = 4
+"""Border of the piece of image that is sampled, for the interpolation."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,10 +15,14 @@ _INNER = 0.55
 _AROUND = 1.7
 """Distance of the places that a spot is compared with, of its radius."""
 _SECTORS = 12
+"""Directions in which a spot is compared with its surroundings."""
 _LEAST_CONTRAST = 5.0
+"""Grey levels; less is noise of the sensor."""
 _SHARE = 0.25
 """Spots with less contrast than this share of the strong ones are texture."""
 _MOST = 80
+"""Most spots that are kept, the strongest first: dirt makes many, and their pairs grow with the
+square."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -22,6 +22,7 @@ from cellctl.processes.antenna_module.vision.plane import MeasuringPlane
 _REACH = 1.55
 """Half side of the pixels that are used, of the radius: not as far as the next contact."""
 _ROUNDS = 8
+"""Most rounds of the fit."""
 _HUBER = 2.0
 """Residual, in standard deviations of a pixel, beyond which a pixel weighs less, as those of dirt
 do."""
@@ -37,8 +38,8 @@ _SHAPE = 4
 """Parameters of the shape, in px: x, y, radius, blur. Brightness follows linearly."""
 _PIXEL_SIGMA = 0.29
 """Standard deviation of an even spread over the width of a pixel, 1 / sqrt(12)."""
-_MOST_BLUR_PX = 5.0
-_LEAST_BLUR_PX = 0.35
+_LEAST_BLUR_PX, _MOST_BLUR_PX = 0.35, 5.0
+"""Bounds of the blur. The pixel alone blurs by 0.29 px."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -73,33 +73,30 @@ def test_moments_about_the_sensor_are_named() -> None:
 
 
 @pytest.mark.parametrize(
-    ("column", "off_n"), [(2, -3.0), (2, 0.6), (2, -12.0), (0, 0.6), (1, -0.6)]
+    ("part", "column", "name", "off"),
+    [
+        ("force_n", 2, "fz_n", -3.0),
+        ("force_n", 2, "fz_n", 0.6),
+        ("force_n", 2, "fz_n", -12.0),
+        ("force_n", 0, "fx_n", 0.6),
+        ("force_n", 1, "fy_n", -0.6),
+        ("moment_n_m", 0, "mx_n_m", 0.005),
+        ("moment_n_m", 0, "mx_n_m", -0.005),
+        ("moment_n_m", 1, "my_n_m", 0.005),
+        ("moment_n_m", 2, "mz_n_m", 0.005),
+        ("moment_n_m", 2, "mz_n_m", -0.005),
+    ],
 )
-def test_a_curve_that_was_not_tared_is_named(column: int, off_n: float) -> None:
-    """Else a pin that stands on the face is hidden by what the zero is off."""
+def test_a_curve_that_was_not_tared_is_named(part: str, column: int, name: str, off: float) -> None:
+    """A zero that is off hides a pin that stands on the face, or lets a moment point elsewhere."""
     good = curve()
-    force_n = good.force_n.copy()
-    force_n[:, column] += off_n
-    name = ("fx_n", "fy_n", "fz_n")[column]
+    values = getattr(good, part).copy()
+    values[:, column] += off
+    unit = {"force_n": "N", "moment_n_m": "N·m"}[part]
     with pytest.raises(
-        InsertionCurveInvalid, match=rf"{name} is .* N in the mean.* without a tare"
+        InsertionCurveInvalid, match=rf"{name} is .* {unit} in the mean.* without a tare"
     ):
-        require_possible_curve(replace(good, force_n=force_n), SOCKET)
-
-
-@pytest.mark.parametrize(
-    ("column", "off_n_m"), [(0, 0.005), (0, -0.005), (1, 0.005), (2, 0.005), (2, -0.005)]
-)
-def test_moments_that_were_not_tared_are_named(column: int, off_n_m: float) -> None:
-    """Else the contact that a moment points at is another one."""
-    good = curve()
-    moment_n_m = good.moment_n_m.copy()
-    moment_n_m[:, column] += off_n_m
-    name = ("mx_n_m", "my_n_m", "mz_n_m")[column]
-    with pytest.raises(
-        InsertionCurveInvalid, match=rf"{name} is .* N·m in the mean.* without a tare"
-    ):
-        require_possible_curve(replace(good, moment_n_m=moment_n_m), SOCKET)
+        require_possible_curve(replace(good, **{part: values}), SOCKET)
 
 
 def test_a_curve_that_begins_at_the_touch_shows_no_zero() -> None:
