@@ -133,7 +133,7 @@ class _Pool:
             process.join(JOIN_S)
 
     def close(self, patience_s: float) -> None:
-        """Let them end what they have begun, for so long altogether."""
+        """Let the workers end what they have begun, for at most ``patience_s`` altogether."""
         self.executor.shutdown(wait=False, cancel_futures=True)
         give_up_s = now_s() + patience_s
         running = [process.sentinel for process in self._context.started]

@@ -137,7 +137,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
 
 def _tidy_at_rest(background: Background, _before: State, after: State) -> None:
     if after in AT_REST:
-        # Not in the loop, which beats for the guard and the line at rest, too.
+        # In a thread: the loop also beats for the guard and the line while the unit is at rest.
         background.start(asyncio.to_thread(give_back_small_blocks))
 
 

@@ -1,4 +1,4 @@
-"""Memory of the daemon: what comes at the start stays, what a run leaves free goes back."""
+"""Memory of the daemon: modules stay loaded, and what a run leaves free goes back to the system."""
 
 import ctypes
 import gc
@@ -40,8 +40,8 @@ def give_back_small_blocks() -> bool:
 
 
 def hold_collections() -> None:
-    """No garbage collection while the daemon is loaded: next to nothing of it is garbage, and the
-    collections take a tenth of the start."""
+    """Collect no garbage while the daemon is being loaded: there is hardly any, and the collections
+    take a tenth of the start."""
     gc.disable()
 
 

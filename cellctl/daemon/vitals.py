@@ -28,7 +28,7 @@ class DaemonVitals:
         self._late: deque[tuple[float, float]] = deque()
 
     def turn(self, late_s: float) -> None:
-        """The event loop took a turn so much later than it was due."""
+        """Note that the event loop took a turn ``late_s`` after it was due."""
         while self._late and self._late[-1][1] <= late_s:
             self._late.pop()
         self._late.append((self._clock(), late_s))

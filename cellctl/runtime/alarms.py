@@ -53,7 +53,7 @@ class _Occurrences:
         return replace(self.first, times=self.times, newest=self.later[-1].since)
 
     def without(self, taken: int) -> "_Occurrences | None":
-        """Those behind the first ``taken``; None where there are none."""
+        """The occurrences after the first ``taken``; None where nothing is left."""
         left = self.times - taken
         if left <= 0:
             return None

@@ -11,7 +11,7 @@ from cellctl.runtime.cell_status import CellStatus
 FOLLOWERS = 2
 """The page, and the page that takes its place while it is being restarted."""
 UNREAD_S = 5.0
-"""A browser that takes nothing for so long has gone, or stands still behind a full network."""
+"""A browser that takes nothing for this time has gone, or its network is full."""
 DESCRIBE_PERIOD_S = 3.0
 """How often files and store are asked. They change by procedures and runs, which take longer."""
 
@@ -49,7 +49,8 @@ class LiveFeed:
         self._described = b""
 
     def publish(self, status: CellStatus) -> None:
-        """A tick, or a change: what the line is shown goes to the followers, too."""
+        """Send what the line is shown to the followers, too; called at each tick and each
+        change."""
         self._view.look()
         if self._mailboxes:
             line = as_line(self._view.snapshot(status))

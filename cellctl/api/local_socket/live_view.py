@@ -159,7 +159,8 @@ class LiveView:
         # an arm may press rests on the newest sample, however old: silence does not end a contact.
         felt = [*newest[:2], newest[2] + (guard.hidden_axial_n or 0.0)]
         # In the sensor's own axes the signs are not those of the part; the magnitude is the same.
-        # With what the zero hides: half way through a Reset the change alone would read as a pull.
+        # The force that the zero hides is added: without it the wrench of an arm that a Reset is
+        # lifting off would read as a pull.
         told = guard.in_part_frame and not stale
         shown = [*felt, *newest[3:]] if told else [math.nan] * 6
         stopped = "" if guard.trip is None else str(guard.trip)

@@ -160,7 +160,7 @@ class Refused(Message):
     remedy: str = ""
     """What to do first, in words; empty where ``permitted`` and ``known`` say it."""
     known: tuple[str, ...] = ()
-    """Recipes or procedures of this cell, where the one that was named is none of them."""
+    """Recipes or procedures of this cell, where an unknown one was named."""
 
 
 class Failed(Message):

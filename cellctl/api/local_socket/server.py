@@ -37,7 +37,7 @@ class LocalLimits:
     clients: int = 16
     """Connections at a time: the page has a few, each terminal one."""
     idle_s: float = 30.0
-    """A terminal asks and hangs up; one that says nothing for so long was forgotten."""
+    """A client that says nothing for this time was forgotten: a terminal asks and hangs up."""
     request_s: float = 3.0
     """Time from the first byte of a request to its last, and for an answer to be taken."""
 

@@ -13,7 +13,7 @@ _LATE_S = 0.1
 not busy is late by a millisecond."""
 _GRACE_S = 0.25
 """After such a delay, beats that already wait in the socket get this long to be read, once. Reading
-them takes a few turns of the loop; by so much a line that is really dead is noticed later."""
+them takes a few turns of the loop. A line that is really dead is noticed later by this time."""
 
 
 class HeartbeatWatch:

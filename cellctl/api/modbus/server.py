@@ -35,9 +35,10 @@ class ServerLimits:
     clients: int = 8
     """Connections at a time: a PLC has one or two, and an engineer's tools some more."""
     idle_s: float = 60.0
-    """A PLC writes its heartbeat at least twice a second; one that is silent so long is gone."""
+    """A client that is silent for this time is gone: a PLC writes its heartbeat at least twice a
+    second."""
     quiet_s: float = 3.0
-    """On a full server, one that has been silent so long makes room for a new one."""
+    """On a full server, a client that has been silent for this time makes room for a new one."""
     frame_s: float = 3.0
     """From the first byte of a request to its last, and for an answer to be taken. Both take
     milliseconds; the rest is for a network that loses packets."""

@@ -47,7 +47,7 @@ class _Place:
 
 
 def address_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Addresses that are none, and those or names that two devices have."""
+    """Values that are no address, and addresses or names that two devices share."""
     yield from host_issues(cell)
     yield from _shared_places(cell)
     yield from _shared_names(cell)

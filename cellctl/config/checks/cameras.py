@@ -17,7 +17,7 @@ holes are smaller than this."""
 
 
 def camera_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Producers that are none: a folder, or another library of the maker."""
+    """Paths that are no GenTL producer: a folder, or another library of the maker."""
     for path, (_, device) in cell.devices().items():
         named = device.settings.get("producers")
         for one in named if isinstance(named, list | tuple) else ():

@@ -14,7 +14,7 @@ _BARE = re.compile(r"^\s*(?:\w+://)?([^/\s]*?)(?::\d+)?(?:/.*)?\s*$")
 
 
 def host_issues(cell: CellConfig) -> Iterator[ConfigIssue]:
-    """Addresses that are none, and what is more than an address."""
+    """Values that are no address, and values that hold more than one."""
     for key, host in written_hosts(cell).items():
         if allowed := _not_a_host(key, host):
             yield ConfigIssue(key, repr(host), allowed)

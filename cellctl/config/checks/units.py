@@ -22,7 +22,7 @@ _LEAST_COM_MM = 5.0
 """The middle of what hangs on a flange or a sensor is farther from it than this."""
 _LONGEST_WAIT_S = 100.0
 _MICROSECONDS = 1000.0
-"""Cameras state their exposure in them, and no other wait is so many milliseconds."""
+"""Cameras state their exposure in microseconds. No wait in milliseconds is as large a number."""
 _RADIANS = "degrees; these look like radians"
 _METRES = "millimetres; these look like metres"
 

@@ -61,7 +61,7 @@ class StatedMeasurement:
     """Thresholds of its components x, y, z (m) and rx, ry, rz (rad), in the axes of the first;
     shape (6,)."""
     share: float
-    """The standard deviation of a component may be so much of its threshold."""
+    """Largest standard deviation of a component, as a share of its threshold."""
     between_heads: Array
     """Covariance of where the second head is in the first: calibration, and drift since; (6, 6)."""
     sway_m: float

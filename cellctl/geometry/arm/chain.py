@@ -23,8 +23,8 @@ class ArmChain:
     upper_rad: Array
     """Shape (6,)."""
     _links: tuple[Array, Array, Array] = field(init=False, repr=False)
-    """What is constant in the pose of each link, what goes with the cosine of its joint's angle and
-    what with the sine, each of shape (6, 4, 4)."""
+    """The pose of each link is the sum of three parts, each of shape (6, 4, 4): one is constant,
+    one is multiplied by the cosine of the joint's angle, and one by its sine."""
 
     def __post_init__(self) -> None:
         _, d_m, a_m, alpha = self.dh.T

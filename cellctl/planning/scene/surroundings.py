@@ -119,7 +119,7 @@ class Surroundings:
 
     def _distance_m(self, pair: int, result: fcl.DistanceResult) -> float:
         first, second = self._object(self._first[pair]), self._object(self._second[pair])
-        # FCL gives -1 for bodies that meet, which says nothing of how deep they are in each other.
+        # FCL gives -1 for bodies that meet, which does not say how deep they are in each other.
         return max(_MEETING_M, float(fcl.distance(first, second, _WITH_POINTS, result)))
 
     def _place_m(self, pair: int, result: fcl.DistanceResult, *, touching: bool) -> Array:

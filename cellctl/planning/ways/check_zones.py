@@ -72,7 +72,7 @@ class _Pair:
     inner: str
     outer: str
     zones: Sequence[Zone]
-    """Those that both of them have."""
+    """The zones that both of them have."""
 
 
 def zone_findings(scene: CellScene) -> Iterator[ZoneTooSmall]:
@@ -157,7 +157,7 @@ def _narrow(
     found = [
         _Narrow(one, sweep(around, one.joints_rad))
         for one in stretches
-        # The quick look: with so much room half way, neither end comes near to anything.
+        # A quick look first: an arm with this much room half way is clear at both ends, too.
         if not around.has_room(one.middle_rad, one.reach_m)
     ]
     return [one for one in found if one.swept.gap.slack_m < 0.0]

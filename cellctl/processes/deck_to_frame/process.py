@@ -237,8 +237,10 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
         return () if cell is None else deck_procedures(cell, self.services, self._waiting)
 
     def _payload_or_none(self) -> "GravityCompensation | None":
-        """The payload that was identified last; none where that is not valid: a Reset needs none,
-        and knows the less of what pulls after a restart."""
+        """The payload that was identified last; None where it is not valid.
+
+        A Reset can do without it, but knows less of what pulls at the arm after a restart.
+        """
         from cellctl.processes.deck_to_frame.calibrations import PAYLOAD
 
         try:

@@ -81,10 +81,11 @@ class CycleLog:
 
 
 def greatest_before_n(task: SearchTask) -> float:
-    """A bound of the force on the part in its search, where it may as well have slipped.
+    """Upper bound of the force (N) on the part during the search, in which it may have slipped,
+    too.
 
-    A greater one would have tripped the guard, and there would be no verdict. What slipped while
-    the face was touched did so before the touches that frame A rests on.
+    A greater force would have tripped the guard, and there would be no verdict. Touching the face
+    does not count: a part that slipped then did so before the touches that frame A rests on.
     """
     return guard_force(task, CyclePhase.SEARCH).value
 

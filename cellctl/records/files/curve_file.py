@@ -86,7 +86,7 @@ class CurveWriter:
 
 
 def is_curve(artefact: Artefact) -> bool:
-    """Whether a file of a run is a force curve; the recording of the whole run is none."""
+    """Whether a file of a run is a force curve, and not the recording of the whole run."""
     return artefact.media_type == MEDIA_TYPE and artefact.name != MOTION
 
 

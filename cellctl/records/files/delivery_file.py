@@ -15,8 +15,8 @@ FOLDER = Path("/run/cellctl-forward")
 """``RuntimeDirectory`` of the shipped unit."""
 NAME = "delivery.json"
 SILENT_S = 180.0
-"""A forwarder that has told nothing for so long has ended or hangs. It tells at least once a
-minute, and a server that answers slowly keeps it for another one."""
+"""A forwarder that has reported nothing for this time has ended or hangs. It reports at least once
+a minute, and a server that answers slowly may keep it for another minute."""
 
 
 class DeliveryState(BaseModel):

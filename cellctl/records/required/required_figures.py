@@ -48,9 +48,9 @@ def states_required(record: RunRecord) -> bool:
 
 
 def missing_figures(record: RunRecord) -> tuple[Figure, ...]:
-    """Those that a run requires and has not measured, without a value.
+    """The figures that a run requires and has not measured, without a value.
 
-    Of a run that is still open too: it may measure them yet.
+    A run that is still open has them as well: it may still measure them.
     """
     found = record.newest_figures
     return tuple(
@@ -61,5 +61,5 @@ def missing_figures(record: RunRecord) -> tuple[Figure, ...]:
 
 
 def not_measured(record: RunRecord) -> tuple[Figure, ...]:
-    """What a run has ended without; nothing of one that is open."""
+    """The required figures that a run has ended without; none while the run is open."""
     return () if record.head.result is None else missing_figures(record)

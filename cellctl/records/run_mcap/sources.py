@@ -17,7 +17,7 @@ class RunSources:
     audit: Sequence[AuditEntry]
     """The audit log of the time of the run."""
     calibrations: Sequence[Calibration]
-    """Those that the run used."""
+    """The calibrations that the run used."""
     files: ArtefactFolder
     missing: list[str] = field(default_factory=list)
     """What the recording lacks, for people; grows while messages are made."""

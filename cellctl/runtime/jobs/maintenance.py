@@ -139,7 +139,7 @@ class MaintenanceJob(Job):
         _log.info("calibration stored", item=outcome.kind.name, id=stored.id)
 
     async def _keep_figures(self, outcome: ProcedureOutcome) -> None:
-        """By how much a bad result is bad belongs into the record of its run, too."""
+        """Record the figures of a result that has failed, too: they say how far it is off."""
         if not self.run_number:
             return
         try:

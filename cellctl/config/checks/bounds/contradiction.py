@@ -28,7 +28,8 @@ _LITTLE = 1e-3
 _NO_CHANGE = 1e-6
 """Share of what is missed, below which it has not changed."""
 _MOST_TIMES = 1e4
-"""Ways out are looked for up to so many times the written value, and down to such a part of it."""
+"""Other values are looked for up to this multiple of the written one, and down to this part of
+it."""
 _EXACT = 1e-11
 """Share to which a way out is found: finer than the digits by which ``at_least`` and ``at_most``
 tell a limit that is round from one that has to be rounded."""

@@ -10,7 +10,7 @@ from cellctl.geometry.uncertain import UncertainPose
 
 RP_OVER_SIGMA = 3.616
 """RP of ISO 9283 is the mean radius plus three of its standard deviations: for equal Gaussian axes
-so many times the standard deviation of one axis."""
+this multiple of the standard deviation of one axis."""
 
 
 def isotropic(position_m: float, rotation_rad: float) -> Array:

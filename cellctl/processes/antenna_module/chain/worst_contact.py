@@ -7,7 +7,7 @@ import numpy as np
 from cellctl.geometry.pose import Array
 
 _DRAWS = 40_000
-"""Number of random draws: with so many the 99th percentile is good to half a per cent."""
+"""Number of random draws, which makes the 99th percentile good to half a per cent."""
 _SEED = 20_130
 """Any number, as long as it stays: see ``predict_worst_contact``."""
 

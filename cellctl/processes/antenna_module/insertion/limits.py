@@ -67,7 +67,7 @@ class InsertionLimits:
     """Height above the first touch from where on the plug moves slowly."""
     travel_m_s: float = 5e-3
     early_touch_m: float = 0.0
-    """Touch and springs may come so much earlier or later than drawn: heights are uncertain. What
+    """How much earlier or later than drawn touch and springs may come: heights are uncertain. What
     ``spring_depth_m`` says is then earlier by as much."""
     entry_m_s: float = 0.07e-3
     entry_step_m: float = 0.025e-3
@@ -80,8 +80,8 @@ class InsertionLimits:
     """Depth over which the contact springs open, at most."""
     above_n: float = 3.0
     entry_rise_n: float = 0.08
-    """Rise of the axial force over its own mean of the last 0.1 s that counts as a contact: a hose
-    that pulls steadily is none."""
+    """Rise of the axial force over its own mean of the last 0.1 s that counts as a contact. A hose
+    that pulls steadily makes no rise."""
     entry_most_n: float = 3.0
     """Whatever it was before."""
     entry_side_n: float = 1.5
@@ -89,8 +89,8 @@ class InsertionLimits:
     over_n: float = 10.0
     """How much more than ``greatest_n`` is allowed at the seat."""
     centre_of_pressure_m: float = 1e-3
-    """Limit of the centre of pressure, at least; it is greater where the contacts reach so far that
-    good ones need it."""
+    """Least limit of the centre of pressure; it is greater for connectors so wide that good ones
+    need it."""
     lever_error_m: float = 0.0
     """Error of the centre of pressure, whatever the connector is."""
     least_pressure_n: float = 8.0

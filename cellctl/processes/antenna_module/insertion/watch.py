@@ -98,7 +98,8 @@ def _trip(
 
 
 class _RunningMean:
-    """Mean wrench of the last samples at the newest depth: so many, or those of so long a time."""
+    """Mean wrench of the last ``count`` samples, or of those within ``seconds``, at the newest
+    depth."""
 
     def __init__(self, count: int | None, seconds: float = float("inf")) -> None:
         self._count, self._seconds = count, seconds

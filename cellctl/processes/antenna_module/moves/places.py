@@ -8,7 +8,7 @@ from cellctl.geometry.pose import Array
 OVER_SOCKET_M = 20e-3
 """Height over the place at the socket at which the plug comes over it."""
 AWAY_M = 5e-3
-"""How far the arm goes away between two looks: so far that it approaches its place anew."""
+"""How far the arm goes away between two looks, so that it approaches its place anew."""
 WAITING_M = 10e-3
 """Height of the tips over the socket's face while the arm waits for an operator who plugs."""
 _LAST_JOINT = 5

@@ -28,7 +28,7 @@ from cellctl.processes.antenna_module.pushing.way import InsertionWay
 _POLL_S = 0.01
 """Pause between two looks at the newest sample; ten samples at 1 kHz."""
 _LATE_S = 1.0
-"""A sensor that is silent for so long beyond the end of a reading counts as lost."""
+"""A sensor that is silent for this time beyond the end of a reading counts as lost."""
 _LEAST_MOMENT_N_M = 0.1
 """Moment that is allowed however small the axial force is: noise and the hose of the gripper."""
 

@@ -86,7 +86,7 @@ def _uncertain_m(recipe: AntennaRecipe) -> float:
 def _most_pressed_n(
     recipe: AntennaRecipe, socket: Connector, base_T_flange: RigidTransform
 ) -> float:
-    """With so much a run may have left the plug pressed where it stands."""
+    """Greatest force (N) with which a run may have left the plug pressed where it stands."""
     limits = InsertionLimits.of(socket)
     _, _, height_m = _place_m(recipe, base_T_flange)
     # The place is stated, and the contact springs may come earlier than drawn.

@@ -124,9 +124,9 @@ _BY_CAUSE: dict[TripCause, type[PluggingError]] = {
 
 
 async def _met(attempt: PushAttempt, cause: TripCause, words: str) -> PluggingError:
-    """The fault that the curve so far names; it may point at a contact, which a trip cannot."""
-    # At the entry the curve can name a single bent contact; a fault that only says that there is no
-    # seat yet is none.
+    """The fault that the curve up to now names. It may name a contact, which a trip cannot."""
+    # At the entry the curve can name a single bent contact. That there is no seat yet is no fault:
+    # the push has just begun.
     if cause is TripCause.AXIAL_EARLY and len(attempt.curve().t_s) >= _FEWEST_SAMPLES:
         judged = (await attempt.judged()).fault
         if judged is not None and not isinstance(judged, PlugShortSeat):

@@ -37,5 +37,6 @@ class InsertionWay:
         return float(self.seat_depth_m - back_m)
 
     def outwards_from(self, base_T_flange: RigidTransform, way_m: float) -> RigidTransform:
-        """A flange so far out of the socket from where it is: a stop has left it anywhere."""
+        """The flange moved out of the socket by ``way_m`` from where it is, wherever a stop has
+        left it."""
         return RigidTransform.from_translation(self.outwards * way_m) * base_T_flange

@@ -17,7 +17,7 @@ from cellctl.processes.antenna_module.state import OverSocket
 from cellctl.processes.antenna_module.steps.stand_off import way_of
 
 _TURNED_FORCE = 0.005
-"""Crosstalk and mounting of a force sensor turn the force that it reports by so much (rad). On the
+"""Angle (rad) by which crosstalk and mounting of a sensor turn the force that it reports. On the
 lever from the sensor to the contacts that is a moment, and moves the centre of pressure."""
 
 

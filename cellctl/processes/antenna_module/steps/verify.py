@@ -21,7 +21,7 @@ out."""
 _AXIAL = 2
 """Index of the force along the insertion axis."""
 _ROUNDING_M = 1e-9
-"""What sums of fine steps are off by; a last step of so much would move nothing."""
+"""Rounding of a sum of fine steps: a last step as short as this would move nothing."""
 
 
 async def verify(inserted: Inserted) -> Released:

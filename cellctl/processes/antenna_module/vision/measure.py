@@ -284,7 +284,7 @@ def _require_scale(fit: PlanarFit, plane: MeasuringPlane, calibration: PlaneCali
 
 
 def require_certain(fit: PlanarFit) -> None:
-    """Raise ``ConnectorUncertain``; a variance below zero, of a fit gone wrong, is none."""
+    """Raise ``ConnectorUncertain`` unless all standard deviations are known and small enough."""
     with np.errstate(invalid="ignore"):
         x, y, yaw = np.sqrt(np.diag(fit.covariance))
     if not (x <= SIGMA_LIMIT_M and y <= SIGMA_LIMIT_M and yaw <= YAW_LIMIT_RAD):

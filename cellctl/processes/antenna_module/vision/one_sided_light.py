@@ -27,7 +27,7 @@ _WIDEST = 1.14
 """Most of the rims' radius over the drawing's. Blur makes holes larger by up to 9 %; where the dark
 side of the funnel is taken for a part of the hole they are larger by 18 % and more."""
 _RADIUS = 1.7
-"""From here on the drawing may have the radius in place of the diameter, too."""
+"""From this ratio on the drawing may state radii in place of diameters."""
 _DIRECTIONS = 48
 _FLAT_TIP = 0.8
 """Share of the radius within which the tip of a pin without chamfer is looked at."""

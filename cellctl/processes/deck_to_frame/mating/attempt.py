@@ -31,8 +31,8 @@ from cellctl.processes.deck_to_frame.mating.result import (
 POLL_S = 0.01
 """Pause between two looks at the newest sample; a reading does not end later by more than this."""
 READING_TIMEOUT_S = 1.0
-"""A sensor that has sent nothing for so long after the end of a reading is silent. The guard, which
-stops the arm, notices it after ``stale_s`` already."""
+"""A sensor that has sent nothing for this time after the end of a reading is silent. The guard,
+which stops the arm, notices it as soon as after ``stale_s``."""
 
 Report = Callable[[MatingProgress], None]
 
@@ -55,7 +55,7 @@ class Attempt:
     """Places that a search for the holes of pins has tried."""
 
     def pose_at(self, travel_m: float) -> RigidTransform:
-        """Flange after so much travel along −Z_D, beside it where the deck gave way."""
+        """Flange after ``travel_m`` along −Z_D, shifted where the deck gave way."""
         return self.plan.pose_at(travel_m, self.offset)
 
     def tell(self, phase: MatingPhase, reading: Reading | None = None, message: str = "") -> None:

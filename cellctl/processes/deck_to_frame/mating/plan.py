@@ -22,10 +22,10 @@ from cellctl.geometry.uncertain import UncertainPose
 from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 
 READING_BAND_N = 1.2
-"""The creep ends so far above F_t, four standard deviations of a reading: noise must not decide
+"""How far above F_t the creep ends, four standard deviations of a reading: noise must not decide
 whether the force of a seat was reached."""
 NOISE_BAND_N = 2.0
-"""The filtered force swings about its mean by so much: a mean of 43 N may read 45 N for a moment
+"""How far the filtered force swings about its mean: a mean of 43 N may read 45 N for a moment
 (docs/mating.md, "The creep"). The creep keeps that far from the abort limit."""
 
 
@@ -48,7 +48,8 @@ class MatingPlan:
     """How the deck gives way to pins; None where it does not."""
 
     def pose_at(self, travel_m: float, offset: LateralOffset = NO_OFFSET) -> RigidTransform:
-        """Flange after so much travel along −Z_D (eq. 18), beside it where the deck gave way."""
+        """Flange after ``travel_m`` along −Z_D (eq. 18), shifted by ``offset`` where the deck gave
+        way."""
         return advance(self.base_T_flange, self.flange_T_deck, travel_m, offset)
 
     def travel_of(self, base_T_flange: RigidTransform) -> float:

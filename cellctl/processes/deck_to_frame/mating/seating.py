@@ -14,7 +14,8 @@ from cellctl.processes.deck_to_frame.mating.limits import fault_of
 from cellctl.processes.deck_to_frame.mating.result import MatingPhase, Reading
 
 _HOLD_TRIES = 3
-"""A force that relaxes is brought back by another creep. After so many readings it is given up."""
+"""Readings after which the hold is given up. A force that relaxes is brought back by another
+creep."""
 
 
 async def creep_to(

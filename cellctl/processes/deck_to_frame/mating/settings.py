@@ -17,7 +17,7 @@ class PinSettings:
     """Pins that enter the deck before it sits, and how far it may give way to them."""
 
     engagement_m: float
-    """They are met so far above the seat."""
+    """Height above the seat at which the deck meets the pins."""
     stiffness_n_m: float = 1e6
     """Upper bound along the approach, arm and pins in series: the arm's own. What was measured at
     the seat says nothing about a pin."""
@@ -44,9 +44,9 @@ class PinSettings:
     greatest_step_rad: float = float(np.deg2rad(0.005))
     """The same for the yaw: 0.04 mm at the end of a face that is 1 m long."""
     search_radius_m: float = 0.0
-    """Places so far round the stand-off are tried for pins that stand on the deck; 0: none is."""
+    """Radius round the stand-off in which places are tried when pins stand on the deck; 0: none."""
     catch_m: float = 1e-4
-    """A pin so far beside its hole still enters."""
+    """A pin that is this far beside its hole still enters."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,8 @@ class MatingSettings:
     (STEPMAX in docs/protocols/sjl-1.md)."""
 
     settle_s: float = 0.5
-    """The wrench has to be steady for so long before the tare: five swings of the hanging mass."""
+    """The wrench has to be steady for this time before the tare: five swings of the hanging
+    mass."""
     settle_timeout_s: float = 5.0
     """A mass that still swings then is a fault. It swings for a second or two after a move."""
     settle_sigma: tuple[float, float] = (3.0, 2.0)
@@ -157,7 +158,7 @@ class MatingSettings:
     """Steps after which a creep is given up, and bound of every loop in contact. A creep that
     converges ends long before."""
     hold_s: float = 0.5
-    """For so long the force is held before the seat is judged."""
+    """Time for which the force is held before the seat is judged."""
     release_low_n: float = 10.0
     release_high_n: float = 20.0
     """Between these the force is left for fastening."""

@@ -82,8 +82,9 @@ async def lift_off(cell: DeckCell, payload: GravityCompensation | None = None) -
 async def _most_pressed_n(
     cell: DeckCell, recipe: DeckRecipe, payload: GravityCompensation | None
 ) -> float:
-    """With so much the deck may be pressed on its frame before anything is known of the zero:
-    negative where it is surely pulled.
+    """Greatest force (N) with which the deck may be pressed on its frame while the zero is unknown.
+
+    Negative where the deck is surely pulled.
 
     Without this each restart would forget a pull, and each Reset after one add as much again. The
     reading less the payload is off by what a run lets it be off before its own zero, because the

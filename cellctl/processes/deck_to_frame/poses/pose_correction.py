@@ -144,9 +144,9 @@ class CorrectionLimits:
     """Largest single correction."""
     rotation_rad: float = float(np.radians(1.5))
     progress_ratio: float = 0.9
-    """Two corrections together must bring the error below this part of what it was."""
+    """Two corrections together must bring the error below this share of what it was."""
     growth_ratio: float = 1.5
-    """One correction must not bring the error above this part of what it was."""
+    """One correction must not bring the error above this multiple of what it was."""
 
 
 def check_correction(error: Array, limits: CorrectionLimits) -> None:

@@ -167,7 +167,7 @@ class _OnCell:
     async def _without_deck(
         self, context: ProcedureContext, *, measuring: StereoStation | None = None
     ) -> None:
-        """The cell is cleared as for a run, deck or not; what comes then needs its space."""
+        """Clear the cell as for a run, and make sure that no deck is held: its space is needed."""
         await clear_the_cell(self._cell, context.board, measuring=measuring)
         await require_no_deck(self._cell, self._services)
 

@@ -22,7 +22,7 @@ _POINTS = 60
 _NEAREST_M = 0.05
 """No lens focuses nearer; what lies behind the camera has no place in its picture."""
 _FARTHEST_PX = 1e5
-"""Places so far outside the picture are those of a distortion beyond its calibrated field."""
+"""A place farther outside the picture than this comes from a distortion that was extrapolated."""
 _CAPTION_PX = 48
 _EXPECTED, _WHITE = (255, 0, 255), (255, 255, 255)
 

@@ -32,8 +32,11 @@ class GaugedHole:
 
     @property
     def offset_below_mm(self) -> float | None:
-        """What the offset of deck and frame is less than; None for a gauge wider than the drawn
-        bore, which tells that the bore is, and nothing of the offset."""
+        """Upper bound of the offset between deck and frame, mm.
+
+        None for a gauge that is wider than the drawn bore: it shows that the bore is wide, and
+        nothing about the offset.
+        """
         below_mm = self.bore_mm - self.gauge.diameter_mm
         return below_mm if below_mm >= 0.0 else None
 

@@ -1,7 +1,8 @@
-"""A force that acts with the feed: a hole only ever holds a peg back that is pushed into it.
+"""Detects a force that acts with the feed, which no hole makes: a hole only holds a peg back.
 
-A sensor that shows one has lost its zero or has another sign, and what is pushed with then is
-greater than what it shows. Source: frame_or_sign in section 5.2 of the study of insertion by touch.
+A sensor that shows such a force has lost its zero or has another sign, and the arm then pushes
+harder than the sensor shows. Source: frame_or_sign in section 5.2 of the study of insertion by
+touch.
 """
 
 from collections import deque
@@ -14,13 +15,13 @@ from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell
 LEAST_SIGN_N = 2.0
 """A smaller force along the axis says nothing about its sign."""
 _LEAST_SIGMAS = 8.0
-"""A change by so many standard deviations is none of the noise (sensor_spike of section 5.2)."""
+"""Noise makes no change of this many standard deviations (sensor_spike of section 5.2)."""
 _IN_A_ROW = 3
 """Fewer samples are a spike."""
 
 
 def most_with_feed_n(cell: JudgedCell) -> float:
-    """A greater force with the feed is none that a hole makes."""
+    """Greatest force (N) with the feed that a good insertion may show."""
     return max(LEAST_SIGN_N, _LEAST_SIGMAS * cell.force_sigma_n)
 
 
@@ -35,7 +36,8 @@ class ForceWithFeed:
         """Shown by three samples in a row."""
 
     def take(self, sample: ContactSample) -> bool:
-        """Take the next one; whether so much has acted with the feed that the force is wrong."""
+        """Take the next sample; True when the force with the feed shows that the sensor is
+        wrong."""
         depth_m, with_feed_n = float(sample.task_position_tip_m[2]), float(sample.force_n[2])
         if self._counts_from_m is None:
             # A peg that was drawn back is held by its walls until the arm has come back by what

@@ -1,10 +1,11 @@
-"""A zero of the sensor that jumps in a feed: the force drops while the tip does not go back.
+"""Detects a zero of the sensor that jumps during a feed: the force drops, but the tip stays.
 
-Arm and contact are a spring: the force along the axis falls by no more than the tip goes back. One
-that drops at once while the tip stands or goes on has lost its zero, and the feed would push with
-as much more as it has dropped. Friction at two points of the walls lets go all at once; it shows in
-side force and moment before. Only depths between the walls count: on a chamfer a peg slides down
-all at once. Source: sensor_spike in section 5.2 of the study of insertion by touch.
+Arm and contact are a spring, so the axial force can only fall as far as the tip goes back. If it
+drops while the tip stands or goes on, the sensor has lost its zero, and the feed would push harder
+by the drop. Two other sudden drops are real and left out: friction at two points of the walls that
+lets go, which shows in side force and moment before, and a peg that slides down a chamfer, which is
+why only depths between the walls count. Source: sensor_spike in section 5.2 of the study of
+insertion by touch.
 """
 
 from collections import deque
@@ -15,18 +16,18 @@ from cellctl.processes.peg_in_hole.insertion.jam import rubbing_n
 from cellctl.processes.peg_in_hole.verdict.judged_task import JudgedCell, JudgedTask
 
 _LEAST_N = 3.0
-"""A smaller drop is left to friction that lets go."""
+"""A smaller drop may be friction that lets go."""
 _LEAST_SIGMAS = 8.0
-"""A change by so many standard deviations is none of the noise."""
+"""Noise makes no change of this many standard deviations."""
 _WANDER_M = 5e-6
-"""An arm may go back by so much within some ticks without a word from its encoders."""
+"""An arm may go back by this within some ticks without its encoders showing it."""
 _SAMPLES = 4
 """Two before the jump and two after it: bandwidth and filter may spread it over a tick, and one
 sample alone that is low is a spike."""
 
 
 def most_dropped_n(cell: JudgedCell) -> float:
-    """A greater drop is none that a hole makes."""
+    """Greatest drop (N) that a good insertion may show."""
     return max(_LEAST_N, _LEAST_SIGMAS * cell.force_sigma_n, _WANDER_M * cell.stiffness_n_m)
 
 
@@ -36,12 +37,13 @@ class ZeroJump:
     def __init__(self, task: JudgedTask) -> None:
         self._cell, self._fit, self._entry_m = task.cell, task.fit, task.fit.entry_depth_m
         self._latest: deque[tuple[float, float, float]] = deque(maxlen=_SAMPLES)
-        """Depth, force against the feed, and what of it friction at the walls makes."""
+        """Depth, force against the feed, and the share of it that friction at the walls makes."""
         self.dropped_n = 0.0
         """Shown by two samples in a row."""
 
     def take(self, sample: ContactSample) -> bool:
-        """Take the next one; whether the force has dropped by so much that its zero is another."""
+        """Take the next sample; True when the force has dropped so far that its zero must have
+        moved."""
         depth_m, axial_n = float(sample.task_position_tip_m[2]), -float(sample.force_n[2])
         if depth_m <= self._entry_m:
             self._latest.clear()

@@ -56,7 +56,7 @@ def judge_curve(curve: PegCurve, part: JudgedPart) -> tuple[InsertionEvidence, P
 
 
 def _plain(value: Any) -> Any:
-    """JSON has no numbers that are none: what is unknown becomes null."""
+    """Plain data for JSON, which has no NaN: an unknown figure becomes null."""
     if isinstance(value, float):
         return value if isfinite(value) else None
     if isinstance(value, dict):

@@ -21,7 +21,7 @@ _MOST_N = LEAST_SIGN_N / 2.0
 
 
 def not_tared(curve: PegCurve) -> str | None:
-    """Words for a force that is there before the part has touched; None where there is none."""
+    """Says which force acts before the part has touched anything; None if none does."""
     columns = [(curve.columns.get(name, name), "N", _MOST_N) for name in FORCES]
     return zero_off(_free_n(curve), columns, f"higher than {_ABOVE_M / MM:g} mm over the face")
 

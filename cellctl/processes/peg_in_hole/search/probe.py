@@ -143,8 +143,10 @@ class TouchProbe:
     async def slide(
         self, way_m: Array, speed_m_s: float, until: Stop, *, share: float = 1.0
     ) -> ContactMotion:
-        """Pressed along a way (n, 2) with so much of the search's force, and ended by as much to
-        the side; ends with the deadline too."""
+        """Slide along a way (n, 2), pressed with ``share`` of the search's force.
+
+        A side force of the same share ends it, and so does the deadline.
+        """
         motion = await self.motions.slide(
             way_m,
             share * self.press_n,

@@ -107,7 +107,7 @@ def _uncertainty(entry: Requirement, places: int | None) -> str:
 
 
 def _places(expanded: float | None) -> int | None:
-    """Decimals of an uncertainty with two figures; None where there is none to go by."""
+    """Decimals that show two digits of an uncertainty; None without an uncertainty."""
     if expanded is None or not expanded > 0:
         return None
     return max(0, 1 - math.floor(math.log10(expanded)))

@@ -72,11 +72,13 @@ in two of 1000 checks with four looks."""
 _MOST_LOOKS = 4
 """A check never takes more looks than this many times those that it began with."""
 _CLEAR = 2.0
-"""A place that is off by so many times the limit has moved: no further look would change that."""
+"""A place that is off by this multiple of the limit has moved: no further look would change
+that."""
 _SIGMAS = 4.5
 """A false alarm costs a calibration. Where nothing has moved, 2 of 2500 drawn checks exceed it."""
 _DRIFTS = 3.0
-"""What warming does to the arm is no fault within so many standard deviations: plans include it."""
+"""A drift of the arm by warming is no fault within this many standard deviations: plans include
+it."""
 
 
 def furthest_m(taught: ReferenceReading, now: ReferenceReading) -> float:

@@ -33,8 +33,8 @@ _MOST_OVER_TARGET = 5.0
 _LEAST_STOP_MS = 20.0
 """A few cycles of a controller, before its brakes even begin."""
 _THICKNESS_SIGMAS = 4.0
-"""Two statements of one thickness may differ by so many standard deviations over the parts: what
-the contact window has for it. From there on the fast travel meets the frame."""
+"""Standard deviations over the parts by which two statements of one thickness may differ: as many
+as the contact window allows for. Beyond it the fast travel meets the frame."""
 _LEAST_BOARD_MM = 50.0
 """A board of less fills a sixth of the picture of a small-field head, and calibrates its middle."""
 
@@ -111,8 +111,8 @@ def _thresholds(recipe: DeckRecipe, key: str) -> Iterator[ConfigIssue]:
             allowed = f"at most {most:g}, which {limit} lets the seated deck have"
             yield ConfigIssue(f"{key}.pose_correction.{name}", f"{threshold:g}", allowed)
     if recipe.stand_off_mm < correction.max_correction_mm:
-        # A deck that was off by so much along the approach would have touched before the first
-        # measurement could say it.
+        # A deck that is off by the largest correction along the approach would touch the frame
+        # before the first measurement could show it.
         allowed = f"at least {correction.max_correction_mm:g}, as pose_correction.max_correction_mm"
         yield ConfigIssue(f"{key}.stand_off_mm", f"{recipe.stand_off_mm:g}", allowed)
 

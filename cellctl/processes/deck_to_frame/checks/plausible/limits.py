@@ -9,7 +9,7 @@ from cellctl.processes.deck_to_frame.checks.reach import BESIDE_MM, TURNED_DEG
 from cellctl.processes.deck_to_frame.recipe import DeckRecipe
 
 _MOST_OVER_THRESHOLD = 10.0
-"""A verdict that is so much wider than what the correction reaches judges nothing."""
+"""A verdict that is wider than this multiple of what the correction reaches judges nothing."""
 _MOST_OVER_STAND_OFF = 2.0
 
 

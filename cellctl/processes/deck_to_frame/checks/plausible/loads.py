@@ -23,8 +23,8 @@ _MOST_LEFT = 0.2
 _WEIGHED_TO = PayloadLimits().mass_ratio + PayloadLimits().crosstalk_ratio
 """Share of the mass by which a weighing that is accepted may be off."""
 _OVERSHOOT = 1.05
-"""Impact and braking add so much to a force that grows until the arm stands: 5 % at most in
-simulated contacts at 1 to 5 mm/s with latencies of 100 and 250 ms."""
+"""Factor by which impact and braking increase a force that grows until the arm stands: 5 % at most
+in simulated contacts at 1 to 5 mm/s with latencies of 100 and 250 ms."""
 _ALUMINIUM_KG_M3 = 2700.0
 """Few decks are as heavy: most are panels with a core of honeycomb."""
 _MOST_RANGE = 10.0
