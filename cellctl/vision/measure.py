@@ -48,10 +48,11 @@ _SIZE_AGREEMENT = 0.02
 _MAX_BLUR_PX = 2.5
 """Blur of a rim (standard deviation) beyond which its image counts as out of focus."""
 _SPREAD_ROUNDS = 3
-"""Each finds what the fits before it had left of a spread, to first order; one is mostly
-enough."""
+"""Rounds in which the spread of the images is improved. Each finds, to first order, what the fits
+of the round before have not modelled; one is mostly enough."""
 _LEAST_GAIN = 30.0
-"""Fall of the information criterion that no spread shows by chance in all rims together."""
+"""Fall of the information criterion (BIC), summed over all rims, that a spread must bring. Chance
+brings less."""
 _SAME_PLACE_PX = 1.0
 """Coarse places nearer to each other than this, in every hole, are the same assignment."""
 _MAX_TRIED = 10
@@ -127,7 +128,7 @@ def _measure(
         rim_rois(images, hole, place_m, located.normal)
         for hole, place_m in zip(holes, located.positions_m, strict=True)
     ]
-    measured = _rims(all_rois, located.places)
+    measured = _all_rims(all_rois, located.places)
     pairs = with_image_scales(measured)
     for rois, rims in zip(all_rois, pairs, strict=True):
         refuse_too_uncertain(rois, rims)
@@ -139,17 +140,18 @@ def _measure(
     return result
 
 
-def _rims(
+def _all_rims(
     rois: Sequence[tuple[RimRoi, RimRoi]], places: Sequence[tuple[LocatedRim, LocatedRim]]
 ) -> list[RimPair]:
     """All rims of a pair, with the spreads of its images that they show together."""
     spreads = (ImageSpread(), ImageSpread())
-    rims = _rims_spread(rois, places, spreads)
+    rims = _rims_with_spreads(rois, places, spreads)
     for _ in range(_SPREAD_ROUNDS):
         likely = _likely_spreads(spreads, rois, rims)
+        # ``image_spread`` gives the very same object back where it has found nothing new.
         if likely[0] is spreads[0] and likely[1] is spreads[1]:
             break
-        trial = _rims_spread(rois, places, likely)
+        trial = _rims_with_spreads(rois, places, likely)
         if not _explained_better(trial, rims):
             break
         spreads, rims = likely, trial
@@ -161,6 +163,10 @@ def _likely_spreads(
     rois: Sequence[tuple[RimRoi, RimRoi]],
     rims: Sequence[RimPair],
 ) -> tuple[ImageSpread, ImageSpread]:
+    """The spreads of both images that the rims show, left and right.
+
+    Only kinds of holes count whose blur is that of the image: a thread looks blurred by itself.
+    """
     telling = [pair for pair, (roi, _) in zip(rims, rois, strict=True) if roi.kind.lends_blur]
     left, right = (
         image_spread(before[image], [shown_spread(pair.singles[image]) for pair in telling])
@@ -170,10 +176,10 @@ def _likely_spreads(
 
 
 def _explained_better(trial: Sequence[RimPair], rims: Sequence[RimPair]) -> bool:
-    """By most of the rims that have one edge then, and by more than chance.
+    """Whether most rims fit better with the spreads of the trial, and by more than chance.
 
-    Light on a wall or a broken edge may look like a spread, but leaves no other rim better
-    explained; and a broken edge is seen beside any spread.
+    Only rims with one edge in the trial count. Light on a wall or a broken edge of one rim may look
+    like a spread, but a spread belongs to the image and must explain the other rims better, too.
     """
     gains = np.array(
         [
@@ -185,7 +191,7 @@ def _explained_better(trial: Sequence[RimPair], rims: Sequence[RimPair]) -> bool
     return bool(gains.size and np.median(gains) > 0.0 and gains.sum() > _LEAST_GAIN)
 
 
-def _rims_spread(
+def _rims_with_spreads(
     all_rois: Sequence[tuple[RimRoi, RimRoi]],
     places: Sequence[tuple[LocatedRim, LocatedRim]],
     spreads: tuple[ImageSpread, ImageSpread],

@@ -25,6 +25,7 @@ that none of 70 is happens once in ten thousand rims."""
 _FEWEST = 10
 """Least number of edge points of a circle."""
 _REFINEMENTS = 3
+"""Rounds of the re-weighted fit; the circle only has to start the fine fit."""
 _TOLERANCE_PX = 0.8
 """An edge point within this distance of a circle agrees with it."""
 _WEAKEST = 0.2

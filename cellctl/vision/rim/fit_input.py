@@ -22,24 +22,26 @@ _BAND_INSIDE_PX, _DENSE_PX = 6.5, 2.5
 """Width of the band inside the rim, and of the strip on either side of its edge of which every
 pixel is used. An edge is blurred over one or two pixels; beyond the strip there are levels only."""
 _INSIDE_RING_PX, _BESIDE_RING_PX = 3.0, 3.5
-"""Width of the band inside a rim with a ring, and beyond the ring: the ring itself carries most of
-what is to be learnt, and the turns of a thread farther in only disturb."""
+"""Width of the band inside a rim that has a ring, and of the band beyond the ring. The ring itself
+tells most of what is to be learnt; the turns of a thread farther inside only disturb the fit."""
 _CLEAR_PX = 3.0
 """The face is judged only from this far outside the rim on, beyond its blur."""
 _MARGIN_PX = 1.0
+"""Distance by which the located centre may still be off."""
 _LOOK_PX = 9.0
 """Distance outside a bore up to which the outer edge of its cone is looked for."""
 _EDGE_PX, _LEAST_OUTSIDE_PX = 2.5, 1.0
-"""Distance kept from that edge, but for the least that a rim needs."""
+"""Distance that the band keeps from that edge, and the least width that it needs all the same."""
 
 _AZIMUTHS, _SECTOR = 60, 5
 """Rays round the rim, and how many neighbours are averaged."""
 _STEP_PX = 0.5
 """Distance of the samples along a ray."""
 _OWN_EDGE_PX = 1.5
-"""Up to here outside the rim the slope is that of its own blurred edge."""
+"""Distance outside the rim up to which the slope is that of the rim's own blurred edge."""
 _LEAST_SHARE, _SIGMAS = 0.06, 5.0
-"""Slopes that count as an edge: of the rim's own slope, and over the noise."""
+"""Least slope that counts as an edge: as a share of the rim's own slope, and in standard deviations
+of the noise. The greater one counts."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +74,8 @@ class _Band:
 
     inside: float
     dense: float
-    """All of them up to here, one in three beyond, where only levels are needed."""
+    """Every pixel counts up to this distance, one in three beyond it, where only the levels of the
+    light are needed."""
     beyond: Array
     """Width of the band outside the rim, at evenly spaced azimuths."""
 
@@ -82,10 +85,8 @@ def fit_input(
 ) -> RimFitInput:
     """Prepare the fit of a located rim; raises ``HoleMissing`` at the border of the image.
 
-    ``spread``: that of the image.
-
-    With ``ring_px``, the width of a ring round the rim, the band reaches beyond the ring and
-    covers little of what lies inside.
+    ``spread`` is how the image spreads light. With ``ring_px``, the width of a ring round the rim,
+    the band reaches beyond the ring and covers little of what lies inside.
     """
     patch = roi.patch_or_refuse(_MARGIN_PX + (ring_px or 0.0))
     centre = to_plane(roi.camera, located.point_px[None], patch.normal, patch.basis)[0]

@@ -12,7 +12,7 @@ import numpy as np
 from cellctl.vision.rim.stereo_fit import Rim, RimPair
 
 _CHANCE = 1.6
-"""The median over three rims stays below in images that nothing disturbs as a whole."""
+"""The median over three rims stays below this in images that nothing disturbs as a whole."""
 
 
 def with_image_scales(pairs: Sequence[RimPair]) -> list[RimPair]:
@@ -23,10 +23,11 @@ def with_image_scales(pairs: Sequence[RimPair]) -> list[RimPair]:
 
 
 def image_scale(rims: Sequence[Rim]) -> float:
-    """Variances over those of independent errors, from all rims of an image; at least 1.
+    """Factor on the variances of all rims of an image, at least 1.
 
-    It comes on top of what a rim's own residuals have widened: those show only the part of an
-    error that the fit could not take up, and the same error has shifted the centres, too.
+    It is how much larger the residuals are than independent errors would make them. It comes on top
+    of the widening by a rim's own residuals: residuals show only the part of an error that the fit
+    could not absorb, and the rest of the same error has shifted the centres.
     """
     # The median: what disturbs the image shows in most of its rims. A burr or a reflex at one hole
     # is that hole's own, whose covariance has grown by it already.

@@ -1,9 +1,9 @@
 """How an image has spread the light of a point, from all its rims together.
 
-A movement of camera or part during the exposure blurs an edge the more, the more the edge lies
-across the way, and a lens out of focus spreads a point over a disc. One rim shows that only
-roughly: light on its wall or chamfer that differs from side to side looks alike. It belongs to the
-exposure, so all rims of an image show the same.
+A movement of camera or part during the exposure blurs the edges that lie across the movement, and
+leaves those along it sharp. A lens out of focus spreads a point over a disc. One rim shows this
+only roughly, because light on its wall or chamfer that differs from side to side looks the same.
+But the spread belongs to the exposure, so all rims of an image show the same one.
 """
 
 from collections.abc import Sequence
@@ -17,24 +17,26 @@ from cellctl.vision.rim.solver import RimFit
 from cellctl.vision.rim.spread import ImageSpread
 
 _LEAST_RIMS = 2
-"""One alone does not tell the spread of an image from what is its own."""
+"""One rim alone cannot tell the spread of the image from its own peculiarities."""
 _OWN: Array = np.array([0.03, 0.03, 0.1])
-"""Standard deviation of what light and shape of one rim add to its estimate: px², px², excess."""
+"""Standard deviation that light and shape of one rim add to its estimate: px², px², excess."""
 _LEAST: Array = np.array([0.01, 0.01, 0.05])
 """Smallest change that is looked for: that of a way of 0.5 px."""
 _SIGNIFICANT = 3.0
 """Standard deviations from which on a change is worth another fit of all rims."""
 _EXCESS = (-1.0, 0.0)
-"""From an even disc to a normal distribution. That of a core in a halo is 3 to 6, where the first
-term of the series does not hold any more: centres came out surer than they were."""
+"""Bounds of the excess kurtosis: from an even disc to a normal distribution. A sharp core in a halo
+has 3 to 6, for which the first term of the series does not hold: centres would be reported as surer
+than they are."""
 _BLUR = 3
 """Index of the blur in ``RimShape.vector``."""
 _RIDGE = 1e-9
+"""Keeps the matrix invertible where a rim shows nothing of one of the three."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ShownSpread:
-    """What one rim shows of it beyond what its fit has modelled."""
+    """What one rim shows of the spread beyond what its fit has modelled."""
 
     change: Array
     """(a, b, k): the variance of the blur across an edge at the angle φ in the image, from columns
@@ -44,12 +46,16 @@ class ShownSpread:
 
 
 def shown_spread(fit: RimFit) -> ShownSpread:
-    """Estimate it to first order from the fit of one image, with shape and light free to follow."""
+    """Estimate the spread to first order from the fit of one image.
+
+    Shape and light are free to follow, so that only what they cannot explain counts.
+    """
     solution, shape = fit.solution, fit.shapes[0]
     by_blur = solution.design[solution.lights + _BLUR]
     (x, y), z = across_rim(fit.problem.views[0].pixels, shape)
-    # The derivatives of a grey value by the variance of the blur, and by its excess, follow from
-    # that by the blur itself, by which edges inside or outside of the rim are about the same.
+    # The derivatives of a grey value by the variance of the blur and by its excess follow from the
+    # derivative by the blur itself. For edges just inside or outside of the rim they are about the
+    # same.
     by_variance, by_excess = by_blur / (2.0 * shape.blur_px), by_blur * shape.blur_px / 24.0
     rows = np.stack(
         [by_variance * (x * x - y * y), by_variance * 2.0 * x * y, by_excess * (z * z - 3.0)]
@@ -60,10 +66,10 @@ def shown_spread(fit: RimFit) -> ShownSpread:
 
 
 def image_spread(before: ImageSpread, rims: Sequence[ShownSpread]) -> ImageSpread:
-    """The spread that the rims of an image show which lend their blur to others.
+    """The spread of an image that these rims show together.
 
-    ``before``: what the fits of these rims had modelled, and what comes back where they show no
-    other one.
+    ``before`` is the spread that their fits had modelled. The same object is returned where the
+    rims show nothing beyond it.
     """
     if len(rims) < _LEAST_RIMS:
         return before
