@@ -38,7 +38,7 @@ SOLVE_S = 900.0
 JOIN_S = 1.0
 """For a process that was killed to be gone."""
 CLOSE_S = 5.0
-"""At the end of the daemon, for work that has begun."""
+"""Time that work which has begun gets at the end of the daemon."""
 
 
 class VisionWorkers:
@@ -152,7 +152,7 @@ class _NotingContext(SpawnContext):
 
     @property
     def started(self) -> list[SpawnProcess]:
-        """Without those whose start has failed: there is nothing to end or to wait for."""
+        """Processes that run; those whose start has failed need no end and no wait."""
         return [process for process in self._processes if process.pid is not None]
 
     def Process(self, *args: Any, **kwargs: Any) -> SpawnProcess:  # type: ignore[override]

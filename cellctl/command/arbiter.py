@@ -52,7 +52,7 @@ class CommandArbiter:
         self._turn = asyncio.Lock()
         self._refusals = RefusalNotes()
         self.latest: TakenCommand | None = None
-        """Of all sources, since the daemon started."""
+        """The newest command of any source since the daemon started."""
 
     @property
     def line_alive(self) -> bool:

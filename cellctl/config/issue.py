@@ -18,7 +18,7 @@ class WrittenValue:
 
     @property
     def accused(self) -> str:
-        """As what may be wrong in place of another value."""
+        """This value as one that may be wrong in place of another."""
         place = "this" if self.line is None else f"line {self.line}"
         return f"{place} is wrong: {self._words}"
 

@@ -48,7 +48,7 @@ class ModelBox:
 
     @property
     def name(self) -> str:
-        """Without its place."""
+        """Name of the file without its folder."""
         return self.key.rsplit(".", 1)[-1]
 
 

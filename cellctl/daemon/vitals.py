@@ -35,7 +35,7 @@ class DaemonVitals:
         self._forget()
 
     def snapshot(self) -> dict[str, Any]:
-        """From memory but for one line of the kernel's."""
+        """The vitals as plain data, from memory but for one line of the kernel's."""
         self._forget()
         return {
             "loop_late_s": self._late[0][1] if self._late else None,

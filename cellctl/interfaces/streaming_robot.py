@@ -29,7 +29,7 @@ class StreamOffer:
     """What the controller can do."""
 
     period_s: float
-    """From one tick to the next."""
+    """Time from one tick to the next."""
     limits: StreamLimits
     """The greatest that it accepts, and that the configuration of this cell allows."""
 

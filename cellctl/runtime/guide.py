@@ -21,4 +21,4 @@ class Guide:
 
 
 UNGUIDED = Guide()
-"""Of a procedure that says nothing about itself."""
+"""The guide of a procedure that says nothing about itself."""

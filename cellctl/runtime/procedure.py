@@ -136,9 +136,9 @@ class Procedure:
     """One procedure, bound to its cell by the process that offers it."""
 
     number: int
-    """As the line gives it in its recipe register; from 100 on."""
+    """Number that the line writes to its recipe register; from 100 on."""
     step: int
-    """As the line sees it in its step register."""
+    """Number that the line sees in its step register."""
     label: str
     run: Callable[[ProcedureContext], Awaitable[ProcedureOutcome | None]]
     """Its result is None when the procedure waits for its counterpart, such as 104 for 105, or only

@@ -53,7 +53,7 @@ class StepSpec(Generic[A, B]):
     """One step of a run: a function from one state to the next, with what line and Hold need."""
 
     number: int
-    """As the line sees it in its step register."""
+    """Number of the step, as the line sees it in its step register."""
     label: str
     """Words for logs, reports and terminals."""
     run: Callable[[A], Awaitable[B]]

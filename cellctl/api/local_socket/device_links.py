@@ -8,7 +8,7 @@ from cellctl.errors.link import LinkError
 
 
 def device_links(cell: Cell, faults: Iterable[CellError]) -> dict[str, str]:
-    """By kind and name; ``faults`` are those that the unit has latched."""
+    """State of each link by kind and name; ``faults`` are those that the unit has latched."""
     links = {name: _problem(check) for name, check in cell.health_checks().items()}
     return links | _answers(cell, _latched(faults))
 

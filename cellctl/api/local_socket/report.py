@@ -39,14 +39,14 @@ class ForceReport(StrictModel):
 
     sensor: str
     age_s: float | None
-    """Of the newest sample; None before the first."""
+    """Age of the newest sample; None before the first."""
     stale: bool = False
     """The newest sample is too old to say what is felt now, and no wrench is shown."""
     compensated: bool
     """Otherwise the weight is still in it, and no wrench is shown."""
     limit_n: float | None
     presses_n: float | None = None
-    """In Stopped and Aborted, where an arm may press; None where none does."""
+    """Force with which an arm may press in Stopped or Aborted; None where none does."""
     wrench: tuple[AxisReport, ...]
 
 

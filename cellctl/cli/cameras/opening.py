@@ -33,13 +33,13 @@ class View:
     side: str
     """``left`` or ``right`` of a head; empty for a single camera."""
     pixels: NDArray[Any]
-    """As the driver hands it on; red first where it is coloured."""
+    """The image as the driver gives it; red comes first where it is coloured."""
     pixel_format: PixelFormat
     exposure: ExposureRecord | None
 
     @property
     def exposure_s(self) -> float | None:
-        """As the camera states it; None where it does not, or sets it by itself."""
+        """Exposure that the camera states; None where it states none, or sets it by itself."""
         return None if self.exposure is None else self.exposure.exposure_s
 
     @property

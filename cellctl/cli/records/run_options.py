@@ -67,7 +67,7 @@ def wanted_runs(
 
 
 def printed_head(head: str) -> LedgerHead | None:
-    """From the text on a report; raises ``typer.BadParameter``."""
+    """The head of the ledger from the text on a report; raises ``typer.BadParameter``."""
     if not head:
         return None
     length, _, found = head.partition(":")

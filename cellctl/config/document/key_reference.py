@@ -38,7 +38,7 @@ class Key:
     what: str
     """What may be written there."""
     default: str
-    """As it would be written, or ``NEEDED``, or ``NONE``."""
+    """The default as it would be written, or ``NEEDED``, or ``NONE``."""
     meaning: str
     """The words beside the key in its model; empty where its name says it all."""
 

@@ -40,7 +40,7 @@ class CapsuleShape(Shape):
     """Distance between the middles of the ends."""
 
     def geometry(self) -> Any:
-        """As FCL has it: the length between the middles."""
+        """The body for FCL, whose length is that between the middles of the ends."""
         return fcl.Capsule(self.ball_m, self.length_m)
 
     def mesh(self) -> trimesh.Trimesh:
@@ -63,7 +63,7 @@ class BoxShape(Shape):
     size_m: tuple[float, float, float]
 
     def geometry(self) -> Any:
-        """With full lengths of the sides."""
+        """The body for FCL, which takes full lengths of the sides."""
         return fcl.Box(*self.size_m)
 
     def mesh(self) -> trimesh.Trimesh:

@@ -59,7 +59,7 @@ def frusta(scene: CellScene) -> Iterator[Frustum]:
 
 
 def _corners_m(head: StereoHead, camera: CameraModel, limits: HeadLimits) -> Array:
-    """In the frame of the camera, shape (8, 3)."""
+    """Corners of the view in the frame of the camera, shape (8, 3)."""
     width, height = head.image_size
     edge_px = np.array([[0, 0], [width, 0], [width, height], [0, height]], dtype=float)
     rays = np.c_[undistort(camera, edge_px), np.ones(4)]

@@ -20,7 +20,7 @@ class FlangePath:
 
     name: str
     points_m: Array
-    """In the frame of the cell, shape (n, 3)."""
+    """Points of the path in the frame of the cell, shape (n, 3)."""
 
 
 def flange_paths(scene: CellScene) -> Iterator[FlangePath]:

@@ -20,7 +20,7 @@ class HeadLimits:
     """What the model says of one head."""
 
     nearest_m: float
-    """From here on, along the line of sight, a rim is sharp."""
+    """Least distance along the line of sight at which a rim is sharp."""
     farthest_m: float
     margin_px: float
     """Least distance between a rim and the edge of the image."""

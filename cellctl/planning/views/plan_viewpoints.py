@@ -54,7 +54,7 @@ class PlannedViews:
     best: PlannedPair
     runners_up: tuple[PlannedPair, ...]
     taught: PlannedPair
-    """As the cell file has it now, whether its heads see their holes or not."""
+    """The pair of poses in the cell file, whether its heads see their holes or not."""
     refused: tuple[Counter[str], Counter[str]]
     """Why places were refused, for each head."""
 

@@ -184,7 +184,7 @@ def _covariance(
     between: Array,
     sway_m: float,
 ) -> Array:
-    """With points that are where the parts have them."""
+    """The covariance for points that lie exactly where the parts have them."""
     return relative_covariance(first, last, *_c1_T_parts(placement), between, sway_m=sway_m)
 
 

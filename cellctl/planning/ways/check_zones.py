@@ -40,9 +40,9 @@ class _Stretch:
     zones: frozenset[str]
     """Those in whose boxes its flange is."""
     bodies: frozenset[Solid]
-    """Of the arm there: a person takes some away for procedures."""
+    """Bodies of the arm that are there: a person takes some away for procedures."""
     lever_m: Array
-    """Of the arm, as ``Surroundings.lever_m``."""
+    """Levers of the arm, as ``Surroundings.lever_m``."""
 
     @property
     def middle_rad(self) -> Array:

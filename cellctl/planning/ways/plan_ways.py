@@ -36,7 +36,7 @@ class PlannedWay:
     time_s: float
 
     def written(self) -> tuple[WayConfig, ...]:
-        """As the cell file has it; none for a straight one."""
+        """The way in the form of the cell file; nothing for a straight one."""
         via = [tuple(np.round(np.degrees(at), 4).tolist()) for at in self.joints_rad[1:-1]]
         if not via:
             return ()

@@ -39,7 +39,7 @@ def _between(way_rad: Array, place: float) -> Array:
 
 
 def _pruned(around: Surroundings, way_rad: Array) -> Array:
-    """From each point straight to the farthest that is free from there."""
+    """The way with as few points as possible: each leads straight to the farthest that is free."""
     kept, here = [way_rad[0]], 0
     while here < len(way_rad) - 1:
         ahead = len(way_rad) - 1

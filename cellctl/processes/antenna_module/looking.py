@@ -55,7 +55,7 @@ class Seen(Generic[M]):
     images: tuple[Image, ...]
     """The measured channel of each, shape (rows, columns)."""
     base_T_flange: RigidTransform
-    """As the arm reported it while the images were taken."""
+    """Pose of the flange that the arm reported while the images were taken."""
     joints_rad: Array
     time_s: float
     """Time of the last image."""

@@ -232,7 +232,8 @@ class AntennaModule(Process["PluggingFacts", "PluggingRun", "GripperEmpty"]):
 
     @classmethod
     def procedure_replays(cls) -> "Mapping[int, ProcedureReplay]":
-        """From the images, poses and touches that their runs have kept."""
+        """What computes procedures anew from the images, poses and touches that their runs have
+        kept."""
         from cellctl.processes.antenna_module.procedures.replays import REPLAYS
 
         return REPLAYS

@@ -250,7 +250,8 @@ class DeckToFrame(Process["RunFacts", "OpenRun", "Ready"]):
 
     @classmethod
     def procedure_replays(cls) -> Mapping[int, ProcedureReplay]:
-        """From the images, targets, wrenches and stops that their runs have kept."""
+        """What computes procedures anew from the images, targets, wrenches and stops of their
+        runs."""
         from cellctl.processes.deck_to_frame.procedures.replays import REPLAYS
 
         return REPLAYS

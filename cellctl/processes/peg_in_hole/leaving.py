@@ -20,7 +20,7 @@ _BESIDE_M = 50e-3
 """Farther than this from the axis of a hole nothing stands in the way. Nothing is touched there
 either, unless the circle of the touches is wider."""
 _INWARDS = 1.0
-"""In the frame of a run, z of the tip points into the hole."""
+"""Sign of z of the tip along the way into the hole, in the frame of a run."""
 _TWIST_N_M = 2.0
 """Largest change of a moment while the part is drawn out: what the study allows the insertion of a
 connector (section 1 of the study of insertion by touch)."""

@@ -19,7 +19,7 @@ from cellctl.processes.peg_in_hole.search.face import TouchedFace
 from cellctl.processes.peg_in_hole.settings import PegSettings
 
 OVER = Rotation.from_rotvec([np.pi, 0.0, 0.0])
-"""From the frame of a hole, z out of its face, to that of a tip, z into it."""
+"""Rotation from the frame of a hole, z out of its face, to that of a tip, z into the hole."""
 
 
 @dataclass(frozen=True, slots=True)

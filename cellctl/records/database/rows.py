@@ -78,7 +78,7 @@ def calibration(stored: StoredCalibration) -> CalibrationRow:
 
 
 _GREATEST = 2**63 - 1
-"""Of SQLite, which asks for no greater number."""
+"""Greatest integer that SQLite takes."""
 
 
 def existing_run(session: Session, number: int) -> RunRow:

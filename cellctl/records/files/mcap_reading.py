@@ -81,7 +81,7 @@ def read_mcap(data: bytes) -> McapContent:
 
 
 def read_raw(data: bytes) -> RawContent:
-    """As ``read_mcap``, but without a look into the messages."""
+    """What ``read_mcap`` reads, but without decoding the messages."""
     topics: dict[int, str] = {}
     messages: list[RawMessage] = []
     facts: dict[str, str] = {}

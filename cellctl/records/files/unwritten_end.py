@@ -42,7 +42,8 @@ class UnwrittenEnds:
         self._folder = folder
 
     def keep(self, run: int, end: UnwrittenEnd) -> None:
-        """On the disk when it returns; raises ``RecordNotWritten``."""
+        """Keep the end of a run; it is on the disk when this returns. Raises
+        ``RecordNotWritten``."""
         content = asdict(end) | {"ended": end.ended.isoformat(), "result": end.result.value}
         try:
             write_durably(self._path(run), (json.dumps(content) + "\n").encode())

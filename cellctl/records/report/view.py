@@ -46,7 +46,7 @@ from cellctl.records.report.text import quantity
 from cellctl.records.seals import LedgerHead
 
 MOST_TILES = 6
-"""As many as fit into two rows of a printed page."""
+"""Most tiles of a page: two rows of a printed one."""
 _VERDICTS = {
     RunResult.GOOD: ("Good part", "good"),
     RunResult.BAD: ("Bad part", "bad"),

@@ -28,7 +28,7 @@ def required(key: str, unit: str, limit: Limit, *, instead: str = "") -> Require
 
 
 def required_document(required_figures: Iterable[RequiredFigure]) -> Document:
-    """As the record of a run keeps them."""
+    """The required figures in the form that the record of a run keeps."""
     content = {
         one.figure.key: {
             "label": one.figure.label,

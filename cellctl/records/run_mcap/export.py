@@ -36,7 +36,7 @@ class ExportedRun:
     messages: Mapping[str, int]
     """Number of messages, by topic."""
     frames: frozenset[str]
-    """Of the tree of transforms."""
+    """Names of the frames in the tree of transforms."""
     missing: tuple[str, ...]
     """Empty when all that the record names is in the file."""
 

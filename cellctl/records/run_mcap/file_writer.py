@@ -28,7 +28,7 @@ class RunFileWriter:
         self.written: Counter[str] = Counter()
         """Messages by topic."""
         self.frames: set[str] = set()
-        """Of all transforms."""
+        """Names of the frames of all transforms so far."""
 
     def add(self, message: TimedMessage) -> None:
         """Messages come in the order of their times."""

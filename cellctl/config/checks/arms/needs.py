@@ -87,7 +87,7 @@ def arm_needs(cell: CellConfig, folder: Path) -> Iterator[ArmNeeds]:
 
 
 def rooms(robot: RobotConfig, needs: ArmNeeds) -> Iterator[BoxRoom]:
-    """Of each box that the settings of an arm state."""
+    """The room in each box that the settings of an arm state."""
     joint_box = f"{BOXES[1]}_min_mm" in robot.settings or f"{BOXES[1]}_max_mm" in robot.settings
     both = np.concatenate([needs.straight_mm, needs.joint_mm])
     inside = {BOXES[0]: needs.straight_mm if joint_box else both}

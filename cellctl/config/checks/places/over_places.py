@@ -68,7 +68,7 @@ class Over:
     base_T_tool: RigidTransform
     """Pose of the tool at the place itself; its z axis leads to it."""
     key: str
-    """Of the place in the recipe, or the calibration that has it."""
+    """Key of the place in the recipe, or name of the calibration that has it."""
     of_place: tuple[ChainedPose, ...] = ()
     """The values that the place follows from."""
     of_tool: tuple[ChainedPose, ...] = ()

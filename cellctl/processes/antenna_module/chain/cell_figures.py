@@ -77,7 +77,7 @@ class PlugCell:
     """Everything that a scheme may use besides the looks."""
 
     cam1: MountedCamera
-    """On the flange: flange_T_cam1."""
+    """The camera on the flange, mounted at flange_T_cam1."""
     cam2: MountedCamera
     """Beside the robot: base_T_cam2."""
     arm: ArmFigures
@@ -85,7 +85,7 @@ class PlugCell:
     gripper: str
     """Name in the drawing of the gripper's marks, wherever its file lies."""
     flange_T_marks: RigidTransform = field(default_factory=RigidTransform.identity)
-    """Of the gripper's marks by its drawing; what it is wrong by is taught."""
+    """Pose of the gripper's marks by its drawing; its error is taught."""
     drawings: DrawingIdentities = DrawingIdentities()
 
     def base_T_cam1(self, base_T_flange: RigidTransform) -> RigidTransform:

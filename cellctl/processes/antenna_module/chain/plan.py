@@ -69,7 +69,7 @@ class PlugPlan:
     slot: str | None
     """The taught slot whose correction was used."""
     distance_m: float
-    """From there to the socket."""
+    """Distance from there to the socket."""
 
     def to_record(self) -> dict[str, Any]:
         """Plain data: poses in mm and degrees, distances in µm."""

@@ -24,7 +24,7 @@ _CAMERAS = (CAMERA_1, CAMERA_2)
 _LEAST_RP_MM = 0.005
 """No data sheet of a six-axis arm promises less."""
 _ABSOLUTE_OVER_RP = 2.0
-"""Of an arm whose geometry was calibrated by its maker."""
+"""Absolute accuracy over repeatability, for an arm whose geometry was calibrated by its maker."""
 _WARMED_K, _GROWS_PER_K = 0.5, 11e-6
 """Least warming of an arm that works, and what steel and cast iron make of a kelvin."""
 _GAP_OVER_ABSOLUTE = 0.3

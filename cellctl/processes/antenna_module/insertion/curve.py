@@ -34,7 +34,7 @@ class InsertionSample:
 
     @property
     def side_n(self) -> float:
-        """Across it."""
+        """Force across the insertion axis."""
         return float(np.hypot(self.force_n[0], self.force_n[1]))
 
     def centre_of_pressure_m(self, least_n: float) -> Array | None:

@@ -75,7 +75,7 @@ class InsertionLimits:
     funnel meets less than 3 N from the side before a stop that takes 250 ms takes effect, or before
     the step ends where no stop is obeyed; with a holder of 50 N/mm."""
     sliding_m_s: float = 0.4e-3
-    """As slow as connectors are tested."""
+    """Speed while the contacts slide: as slow as connectors are tested."""
     spring_rise_m: float = 0.5e-3
     """Depth over which the contact springs open, at most."""
     above_n: float = 3.0

@@ -31,9 +31,9 @@ class KeptLook:
     place: Place
     """How certain that is."""
     base_T_flange: RigidTransform
-    """As the arm reported it meanwhile."""
+    """Pose of the flange that the arm reported meanwhile."""
     angle_rad: float = 0.0
-    """Of the last joint, where the gripper was turned for the look."""
+    """Angle of the last joint, where the gripper was turned for the look."""
 
     def again(self, image: Callable[[str], Image]) -> RigidTransform:
         """``camera_T_marks`` as it is measured today; ``image`` reads one by its file.

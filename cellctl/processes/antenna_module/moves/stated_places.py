@@ -79,7 +79,7 @@ class PluggingPlaces:
 
     @cached_property
     def above_tray(self) -> StatedPlace:
-        """From where they come down."""
+        """The place over the tray from which the tips come down."""
         return self.raised("above the tray", self.grip, self.recipe.grip_approach_mm * MM)
 
     @cached_property
@@ -122,7 +122,7 @@ class PluggingPlaces:
 
     @cached_property
     def clear_of_socket(self) -> StatedPlace:
-        """From where the way home begins, whatever was done at the socket."""
+        """The place from which the way home begins, whatever was done at the socket."""
         face = self._base_T_socket * MATED_TURN * self._flange_T_plug.inv()
         at_face = self._at("face of the socket", SOCKET_LOOK, face)
         return self.raised("clear of the socket", at_face, self.recipe.grip_approach_mm * MM)

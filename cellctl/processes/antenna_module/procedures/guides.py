@@ -68,7 +68,7 @@ TOUCHED = Guide(
 
 
 def plugged(recipe_id: int) -> Guide:
-    """Of the plugs of one recipe."""
+    """Guide to teaching the plugs of one recipe."""
     return Guide(
         ("Modules lie on the tray, the first one ready.", "The socket is free."),
         (

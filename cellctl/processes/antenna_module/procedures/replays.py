@@ -126,4 +126,4 @@ REPLAYS: Mapping[int, ProcedureReplay] = {
     207: replay_turns,
     208: replay_touches,
 }
-"""By the number of the procedure."""
+"""What computes a procedure anew, by its number."""

@@ -24,7 +24,7 @@ FINE_M = 0.02e-3
 would be 50 N."""
 _AXIAL = 2
 _FEWEST_SAMPLES = 20
-"""As many as a curve of a file must have; fewer show no features."""
+"""Fewest samples that show the features of a curve: as many as that of a file must have."""
 
 
 async def push_in(attempt: PushAttempt, step_m: float) -> float:

@@ -41,7 +41,7 @@ async def record_judgement(
 
 
 def judged_limits(limits: InsertionLimits) -> Mapping[str, Limit]:
-    """Of the figures that say how the insertion went, by their keys."""
+    """Limits of the figures that say how the insertion went, by their keys."""
     seat, off = limits.seat_depth_m / MM, limits.seat_tolerance_m / MM
     return {
         keys.SEAT_DEPTH: Limit(seat - off, seat + off),

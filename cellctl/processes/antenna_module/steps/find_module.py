@@ -47,7 +47,7 @@ async def find_on_tray(run: PluggingRun, images: str) -> ModuleFound:
 @dataclass(frozen=True, slots=True, eq=False)
 class _OnTray:
     base_T_connector: RigidTransform
-    """As high and level as the drawing has it."""
+    """Pose of the connector, at the height of the drawing and level."""
     top_height_m: float
 
 

@@ -31,7 +31,8 @@ _DOWELS_MM = (
 )
 """Diameters of ISO 8734 and ISO 2338 that are in use."""
 _TIGHTER_MM, _WIDER_MM = 0.05, 0.2
-"""Of the hole of a dowel: pressed in, and with play."""
+"""How much narrower than a dowel its hole may be where it is pressed in, and how much wider where
+it has play."""
 _OVER_SCREWS = (0.7, 2.0)
 """Diameter of a pin over that of the screws beside it. Pins that relieve screws of shear are as
 thick as these or a size thicker; M4 with 3 mm and M5 with 8 mm are what is met at the ends."""

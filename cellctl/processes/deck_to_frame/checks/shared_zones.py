@@ -36,7 +36,7 @@ class _Station:
     cell: CellConfig
     main: str
     middle_m: Array
-    """Of the frame, x and y in the base of the main arm, shape (2,)."""
+    """Middle of the frame, x and y in the base of the main arm, shape (2,)."""
     turns_m: Array
     """Places of the main arm's flange beside the station, shape (n, 3); none without kinematics."""
     bases: Mapping[str, Sequence[float]]

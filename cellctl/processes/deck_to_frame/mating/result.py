@@ -100,7 +100,7 @@ class MatingResult:
     creep: tuple[Reading, ...]
     """Readings of the creep, oldest first."""
     stiffness: StiffnessEstimate | None
-    """From all readings in contact, where there were enough."""
+    """Stiffness from all readings in contact; None where there were too few."""
     hold: Reading
     verdict: SeatVerdict
     relaxing: tuple[Reading, ...]

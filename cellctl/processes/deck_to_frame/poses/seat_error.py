@@ -94,7 +94,7 @@ def seat_error(M_T_D: UncertainPose, thickness_m: float, holes: Sequence[Hole]) 
 
 
 def _moved(M_T_D: RigidTransform, hole: Hole) -> Array:
-    """From the place of a hole to where it is, shape (3,)."""
+    """Vector from the nominal place of a hole to its measured place, shape (3,)."""
     return np.asarray(M_T_D.apply(hole.position_m) - hole.position_m)
 
 

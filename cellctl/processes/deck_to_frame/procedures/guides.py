@@ -66,7 +66,7 @@ REFERENCE = Guide(
 
 
 def stiffness(recipe_id: int) -> Guide:
-    """Of the parts of one recipe."""
+    """Guide to measuring the stiffness of one recipe's parts."""
     return Guide(
         (
             _GRIPPED,

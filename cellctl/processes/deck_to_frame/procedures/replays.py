@@ -89,4 +89,4 @@ REPLAYS: Mapping[int, ProcedureReplay] = {
     107: partial(replay_stop_latency, name=STOP_LATENCY.name),
     109: replay_arm_reference,
 }
-"""By the number of the procedure."""
+"""What computes a procedure anew, by its number."""

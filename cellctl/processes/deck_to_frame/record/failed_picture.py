@@ -37,7 +37,7 @@ class ExpectedRim:
 
 
 Expected = Mapping[tuple[int, Side], tuple[ExpectedRim, ...]]
-"""By head, from 1 on, and camera."""
+"""Expected rims by head, from 1 on, and camera."""
 
 
 def expected_rims(

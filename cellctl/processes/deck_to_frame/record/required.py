@@ -14,7 +14,8 @@ from cellctl.vision.registration.part_pose import RESIDUAL_LIMIT_M
 
 
 def required_figures(facts: RunFacts) -> tuple[RequiredFigure, ...]:
-    """Of the seated deck first, then of the mating, then of the way there."""
+    """Figures that a run must measure: of the seated deck, then of the mating, then of the way
+    there."""
     return (*_seated(facts), *_mating(facts), *_before_mating(facts), *_fits())
 
 

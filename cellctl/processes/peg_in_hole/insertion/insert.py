@@ -58,13 +58,13 @@ class Fed:
     seat_force_n: float
     seat_slope_n_m: float | None
     held_way_m: float
-    """Of the last feed, as ``held_way_m`` has it."""
+    """Way on which something held the peg back in the last feed; see ``held_way_m``."""
     unrubbed_way_m: float | None
-    """Likewise; None for a part without contacts."""
+    """Way without the force of the contacts in the last feed; None for a part without contacts."""
     with_feed_n: float
-    """Of the last feed, as ``with_feed_n`` has it."""
+    """Greatest force that acted with the last feed."""
     dropped_n: float
-    """Likewise, as ``dropped_n`` has it."""
+    """Greatest drop of the force in the last feed that no way back explains."""
     greatest_force_n: float
     recoveries: tuple[str, ...]
     samples: tuple[ContactSample, ...]

@@ -33,7 +33,7 @@ _LEAST_SIGMAS = 8.0
 
 
 class _Felt(NamedTuple):
-    """At one place of the way."""
+    """What was felt at one place of the way."""
 
     standing: Standing
     unexplained_n: float

@@ -50,7 +50,7 @@ class FitGeometry:
     peg_chamfer_m: float
     """Widths of chamfers at 45 degrees; 0 without."""
     depth_m: float
-    """From the face to the seat."""
+    """Depth of the seat below the face."""
     outer_radius_m: float | None = None
     """Radius of the raised plug that has the hole; None for a hole in a plate."""
     keys: KeyGeometry | None = None
@@ -99,7 +99,7 @@ class CellFigures:
     stiffness_n_m: float
     """Stiffness of arm and contact in series, along the axis of the hole."""
     dead_time_s: float
-    """From a force at the tip to a motion of the tip in answer."""
+    """Time from a force at the tip to a motion of the tip in answer."""
     uncertainty_m: float
     """Radius that holds 99 % of the errors of the coarse position."""
     repeatability_m: float

@@ -24,7 +24,7 @@ _MOST_TO_THE_SIDE = 0.9
 the arm has answered, and with nothing left it never moves."""
 _MOST_OVER_INSERTION = 3.0
 _MOST_LEVERS = 3.0
-"""Of what the greatest force makes on the whole length of the part."""
+"""Most moment, as a multiple of what the greatest force makes on the whole length of the part."""
 
 
 def force_bounds(

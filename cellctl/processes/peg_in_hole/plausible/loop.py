@@ -18,7 +18,7 @@ from cellctl.processes.peg_in_hole.settings import PegSettings
 _LEAST_REPEATABILITY_MM = 0.005
 """No data sheet of a six-axis arm promises less."""
 _LEAST_HEIGHT_SHARE = 0.1
-"""Of the repeatability: heights are read from the same joints."""
+"""Least noise of a height over the repeatability: heights are read from the same joints."""
 _STREAM_PERIOD_MS = 4.0
 """Of the fastest controllers; a setpoint takes effect two periods after the force at the least."""
 _MOST_NOISE = 0.01

@@ -12,7 +12,7 @@ _BACK = "The robot lifts off and drives to the beginning."
 
 
 def loop(recipe_id: int) -> Guide:
-    """Of the contact of one recipe's parts."""
+    """Guide to measuring the contact of one recipe's parts."""
     return Guide(
         _SET_UP,
         (_TOUCHES, "The robot presses the face and swings in the air above it.", _BACK),
@@ -21,5 +21,5 @@ def loop(recipe_id: int) -> Guide:
 
 
 def panel(recipe_id: int) -> Guide:
-    """Of the face of one recipe's panel."""
+    """Guide to measuring the face of one recipe's panel."""
     return Guide(_SET_UP, (_TOUCHES, _BACK), renews=(PANEL_REFERENCE.for_recipe(recipe_id).name,))

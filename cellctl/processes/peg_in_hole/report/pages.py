@@ -131,7 +131,8 @@ def _computed(parameter: dict[str, object]) -> str:
 
 
 def _insertion_limit_n(record: RunRecord) -> float | None:
-    """From the inputs of the guard's limits; None for runs of earlier versions."""
+    """Limit of the insertion from the inputs of the guard's limits; None in runs of earlier
+    versions."""
     choice = record.document(keys.CHOICE) or {}
     for limit in choice.get("guard", []):
         if "F_i" in limit.get("inputs", {}):

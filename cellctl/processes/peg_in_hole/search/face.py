@@ -134,7 +134,7 @@ class _Touching:
     height_uncertainty_m: float
 
     async def over_first(self, place_m: Array, from_m: float) -> None:
-        """From over the search centre to a place (2,), at depth ``from_m``."""
+        """Move from over the search centre to a place (2,), at depth ``from_m``."""
         over_m = self._over_m(from_m)
         await self.motions.back_out(-over_m)
         await self._over(place_m, over_m)
@@ -142,7 +142,7 @@ class _Touching:
             await self._over(place_m, from_m)
 
     async def over_next(self, angle_rad: float, radius_m: float, from_m: float) -> None:
-        """From the last place to the next one; round a plug that stands in the way."""
+        """Move from the last place to the next one, round a plug that stands in the way."""
         begun = await self.motions.back_out(-from_m)
         if self.datum_depth_m > 0:
             x_m, y_m, _ = begun.last.task_position_tip_m

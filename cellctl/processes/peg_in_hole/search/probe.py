@@ -105,7 +105,7 @@ class TouchProbe:
         self.deadline_s = deadline_s
         self.trace = SearchTrace() if trace is None else trace
         self._lean_m = 0.0
-        """By how much the low side of the peg is below its tip, as it leans."""
+        """How far the low side of a leaning peg is below its tip, m."""
         self.walled = against_a_wall(self.press_n, task.cell)
         """Ends a slide or a press at a flank, before the force on it adds up."""
 

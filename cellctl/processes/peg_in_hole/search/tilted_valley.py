@@ -94,7 +94,7 @@ class _Valley:
         self._reach_m = 2 * probe.task.fit.bore_radius_m
         self._here_m: Array = np.zeros(2)
         self._arrived = False
-        """In the hole, or against its far wall."""
+        """True once the peg is in the hole, or stands against its far wall."""
 
     async def follow(self, at_m: Array, dip_m: float) -> Array | None:
         """Bottom centre (2,) at the wall, or where the peg fell in; None where no valley is."""

@@ -23,10 +23,10 @@ class LateralCapture:
 
 @dataclass(frozen=True, slots=True)
 class InsertionEvidence:
-    """Of one insertion; depths from the face that was touched in this cycle."""
+    """Evidence of one insertion; depths count from the face that was touched in this cycle."""
 
     depth_m: float | None
-    """Of the tip, less the force on it divided by the stiffness."""
+    """Depth of the tip, less the force on it divided by the stiffness."""
     seat_force_n: float | None
     seat_slope_n_m: float | None
     """Rise of the axial force over depth at the seat."""
@@ -42,7 +42,7 @@ class InsertionEvidence:
     greatest_force_n: float | None
     """Along the axis, ever since the part was gripped."""
     grip_force_n: float | None
-    """At which the part slips in the gripper, measured at commissioning."""
+    """Force at which the part slips in the gripper, measured at commissioning."""
     retouch_error_m: float | None
     """After release: height of the part's rear, by a touch, less where the drawing has it."""
     keyed_directions: int | None = None
@@ -72,4 +72,4 @@ NOTHING_KNOWN = InsertionEvidence(
     grip_force_n=None,
     retouch_error_m=None,
 )
-"""Of a part that nobody has inserted yet."""
+"""Evidence of a part that nobody has inserted yet."""

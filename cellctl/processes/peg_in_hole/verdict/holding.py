@@ -30,7 +30,7 @@ def telling_turn_rad(keys: KeyGeometry) -> float:
 
 
 async def directions_that_resist_a_turn(motions: ContactMotions, keys: KeyGeometry) -> int:
-    """Of two; the part is left at the angle at which it was."""
+    """How many of the two directions resist; the part is left at the angle at which it was."""
     begun = (await motions.press(_PRESS_N, _SETTLE_S, never)).last
     upright = np.array([0.0, 0.0, float(begun.task_rotation_tip_rad[2])])
     # Only the change counts: the moment that is there before the turn is none of the keys.

@@ -10,11 +10,11 @@ class JudgedCell(Protocol):
 
     @property
     def stiffness_n_m(self) -> float:
-        """Of arm and contact in series, along the axis of the hole."""
+        """Stiffness of arm and contact in series, along the axis of the hole."""
 
     @property
     def force_sigma_n(self) -> float:
-        """Of the mean of ten samples of one component."""
+        """Standard deviation of a mean of ten samples of one component."""
 
     @property
     def friction(self) -> float:

@@ -36,7 +36,7 @@ _SETTLE_S = 1.0
 Side = tuple[int, float]
 """Axis (0 for x, 1 for y) and sign of a push."""
 SIDES: tuple[Side, ...] = ((0, 1.0), (0, -1.0), (1, 1.0), (1, -1.0))
-"""In the order of the pushes."""
+"""The sides in the order of the pushes."""
 
 
 def push_force_n(cell: JudgedCell) -> float:

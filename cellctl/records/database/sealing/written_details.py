@@ -35,11 +35,11 @@ class WrittenDetails:
     """What has been written of one run so far."""
 
     hashes: Mapping[str, str] = field(default_factory=dict)
-    """By table, each over its rows in their order."""
+    """Hash of each table by its name, over its rows in their order."""
 
     @classmethod
     def read(cls, session: Session, run: int) -> Self:
-        """As it follows from the rows that are there."""
+        """The details of a run as its rows say them now."""
         written = cls()
         for table in DETAILS:
             columns = table.__table__.c

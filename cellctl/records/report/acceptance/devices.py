@@ -56,7 +56,7 @@ def _device(
 
 
 def _serial_numbers(device: Mapping[str, Any]) -> Iterator[str]:
-    """Of the device, or of each camera that its settings name."""
+    """Serial number of the device, or of each camera that its settings name."""
     settings = device.get("settings", {})
     inner = (settings.get(part, {}) for part in ("left", "right", "camera"))
     for one in (device, settings, *inner):

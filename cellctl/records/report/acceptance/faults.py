@@ -62,7 +62,7 @@ def _cut_off(record: RunRecord) -> FaultBox:
 
 
 def cause_and_remedy(number: int) -> tuple[str, str]:
-    """From the fault catalogue; dashes for a number that nobody here knows."""
+    """Cause and remedy from the fault catalogue; dashes for a number that is not in it."""
     fault = known_fault(number)
     return (MISSING, MISSING) if fault is None else (fault.cause, fault.remedy)
 

@@ -100,7 +100,7 @@ def _rows(group: RequirementGroup, phases: Mapping[int, str]) -> Iterator[TableR
 
 
 def _uncertainty(entry: Requirement, places: int | None) -> str:
-    """In the table; a dash where there is no value that it could be of."""
+    """The uncertainty in the table; a dash where there is no value."""
     if entry.expanded is None and entry.value is not None and entry.verdict is not None:
         return NOT_STATED
     return _rounded(entry.expanded, entry.unit, places)

@@ -40,7 +40,7 @@ class ReferenceLooks:
     plate_in_camera_1: tuple[Array, ...]
     plate_in_camera_2: tuple[Array, ...]
     lever_m: float
-    """From the flange to what was looked at, at most."""
+    """Greatest distance from the flange to what was looked at."""
 
     def __add__(self, other: "ReferenceLooks") -> "ReferenceLooks":
         """Both drives together."""

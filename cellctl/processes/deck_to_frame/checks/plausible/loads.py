@@ -108,7 +108,7 @@ def _sensor_left_n(cell: CellConfig, recipe: DeckRecipe, weighed_kg: float) -> f
 
 
 def _rounded_down(speed_mm_s: float) -> float:
-    """To two digits: what is named has to pass."""
+    """The speed rounded down to two digits: what a finding names has to pass."""
     digit = 10.0 ** (floor(log10(speed_mm_s)) - 1)
     return floor(speed_mm_s / digit) * digit
 
