@@ -18,6 +18,8 @@ class RunFilter:
     recipe: str = ""
     """Name of the recipe, whole."""
     operator: str = ""
+    mode: str = ""
+    """``PRODUCTION``, ``MAINTENANCE`` or ``DRY_RUN``."""
     result: str = ""
     """A ``RunResult``, or ``OPEN``."""
     fault: int | None = None
@@ -42,6 +44,7 @@ class RunFilter:
             "substr(serial, 1, length(:begins)) = :begins": ("begins", self.serial_begins),
             "recipe_name = :recipe": ("recipe", self.recipe),
             "operator = :operator": ("operator", self.operator),
+            "mode = :mode": ("mode", self.mode),
             f"coalesce(result, '{OPEN}') = :result": ("result", self.result),
             "(fault_number = :fault OR EXISTS (SELECT 1 FROM alarms"
             " WHERE alarms.run = runs.number AND alarms.number = :fault))": ("fault", self.fault),

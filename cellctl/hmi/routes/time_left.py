@@ -9,7 +9,8 @@ from cellctl.hmi.answers.time_left import NOTHING, TimeLeft, UsualStep, time_lef
 from cellctl.hmi.archive import ArchiveReader
 from cellctl.hmi.routes.parameters import RunNumber
 from cellctl.hmi.visitors.access import Asked
-from cellctl.records.entries import RunHead, RunResult
+from cellctl.records.entries import RunHead
+from cellctl.records.outcome import result_at_end
 from cellctl.records.run_filter import RunFilter
 
 router = APIRouter(tags=["records"])
@@ -20,7 +21,7 @@ _RECIPES_KEPT = 20
 
 
 class UsualTimes:
-    """What good runs of a recipe take, kept until there is another one.
+    """What runs of a recipe and mode that came to their end take, kept until there is another one.
 
     Every page asks every few seconds, and whole records take longer to read than a list of them.
     Belongs to one event loop.
@@ -35,11 +36,16 @@ class UsualTimes:
 
         Raises ``StoreUnavailable``.
         """
-        wanted = RunFilter(before=head.number, recipe=head.recipe_name, result=RunResult.GOOD)
+        wanted = RunFilter(
+            before=head.number,
+            recipe=head.recipe_name,
+            mode=head.mode,
+            result=result_at_end(head.mode),
+        )
         listed = await self._archive.listed(wanted, RUNS)
         # A recipe that was changed since may have other steps, and other times.
         alike = (one.head for one in listed if one.head.recipe_hash == head.recipe_hash)
-        numbers = tuple(one.number for one in alike if one.mode == head.mode)
+        numbers = tuple(one.number for one in alike)
         if numbers not in self._kept:
             self._kept[numbers] = await self._archive.ask(
                 lambda store: usual_steps([store.run(number).phases for number in numbers])
@@ -52,7 +58,7 @@ class UsualTimes:
 
 @router.get("/runs/{number}/time-left")
 async def left(request: Request, number: RunNumber, _visitor: Asked) -> TimeLeft:
-    """How long an open run will still take, by the last good ones of its recipe.
+    """How long an open run will still take, by the last good ones of its recipe and mode.
 
     All null for a run that has ended, and while there is no good run of the recipe as it is.
     """

@@ -11,6 +11,7 @@ from cellctl.errors.records.store import FigureBeyondLimit
 from cellctl.packml.unit_command import UnitCommand
 from cellctl.records.entries import DRY_RUN, PRODUCTION, RunResult
 from cellctl.records.figures import NOT_MEASURED
+from cellctl.records.outcome import result_at_end
 from cellctl.records.required.required_figures import missing_figures, required_document
 from cellctl.records.run_recorder import RunRecorder
 from cellctl.records.store import RunStore
@@ -64,8 +65,12 @@ class ProductionJob(Job):
 
     @property
     def outcome(self) -> RunResult:
-        """A dry run ends without a part: never good."""
-        return RunResult.BAD if self._command.dry_run else RunResult.GOOD
+        """That of the run when it has come to its end."""
+        return result_at_end(self._mode)
+
+    @property
+    def _mode(self) -> str:
+        return DRY_RUN if self._command.dry_run else PRODUCTION
 
     def interrupt(self, fault: CellError) -> bool:
         """End a step in contact by this fault; False when the process offers no way."""
@@ -81,15 +86,14 @@ class ProductionJob(Job):
         # leaves no record.
         prepared = await self._process.prepare(self._recipe)
         self._stored = _ids(prepared)
-        mode = DRY_RUN if self._command.dry_run else PRODUCTION
         # Before ``begin``, the first call that moves a robot: no motion without a record.
-        run = await self._record.open(self._recipe, mode, prepared.stored)
-        if mode == PRODUCTION:
+        run = await self._record.open(self._recipe, self._mode, prepared.stored)
+        if self._mode == PRODUCTION:
             store = self._process.services.store
             await warn_of_earlier_part(store, self._recipe, self._command, run, self._warn)
         context = RunContext(self._recorder, self._safe_point, self._interruption)
         opened = self._process.open(prepared, context)
-        if mode == PRODUCTION and (required := self._process.required(opened)):
+        if self._mode == PRODUCTION and (required := self._process.required(opened)):
             await self._recorder.add(required_document(required))
         self._begun = opened, await self._process.begin(opened)
 

@@ -49,6 +49,8 @@ def numbers(folder: Path, wanted: RunFilter) -> list[int]:
         (RunFilter(fault=207), [2]),
         (RunFilter(recipe="panel 500 x 1000", operator="OP-7"), [3, 2, 1]),
         (RunFilter(operator="OP-8"), []),
+        (RunFilter(mode="production"), [3, 2, 1]),
+        (RunFilter(mode="dry run"), []),
         (RunFilter(calibration="ef" * 32, result="good"), [1]),
         (RunFilter(calibration="ef"), []),
     ],
