@@ -93,7 +93,7 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         stack.callback(store.close)
         cell = _cell(config, cell_file.parent, data_dir)
         loop.add_signal_handler(signal.SIGHUP, tell, signal.SIGHUP)
-        stack.callback(cell.workers.close)
+        _load_children(cell, stack)
         unit = UnitController(cell, store)
         unit.calibrations.look_every(LOOK_S)
         unit.machine.on_change.append(partial(_tidy_at_rest, unit.background))
@@ -133,6 +133,15 @@ async def serve(cell_file: Path, overrides: Overrides) -> int:
         notify("STOPPING=1")
     _log.info("ended")
     return 0
+
+
+def _load_children(cell: Cell, stack: AsyncExitStack) -> None:
+    stack.callback(cell.workers.close)
+    # Guards load while the unit loads its processes. None opens its sensor before the devices are
+    # connected, so that a second daemon of the same cell takes nothing from the first.
+    for guard in cell.guards.values():
+        guard.load()
+        stack.push_async_callback(guard.stop)
 
 
 def _tidy_at_rest(background: Background, _before: State, after: State) -> None:

@@ -12,6 +12,7 @@ from typing import Any
 
 from cellctl.errors.force import GuardDied, GuardRefused
 from cellctl.guard import ring
+from cellctl.guard.limits import GuardSettings
 from cellctl.guard.messages import Message, encode, receive
 from cellctl.guard.ring_reader import RingReader
 
@@ -22,21 +23,22 @@ _QUIT_S = 2.0
 class GuardChild:
     """One process with its link and its ring. Not reused: a new guard is a new child.
 
-    ``on_event`` gets every event of the guard. ``on_death`` is called once, with how it ended in
-    words, after all its last messages.
+    It loads its drivers by ``set_up`` and opens them at ``OPEN``. ``on_event`` gets every event of
+    the guard. ``on_death`` is called once, with how it ended in words, after its last messages.
     """
 
     def __init__(
         self,
-        ring_slots: int,
-        reply_timeout_s: float,
+        set_up: Message,
+        settings: GuardSettings,
         on_event: Callable[[Message], None],
         on_death: Callable[[str], None],
+        *,
         module: str,
     ) -> None:
         self._on_event = on_event
         self._on_death = on_death
-        self._pending = PendingRequests(reply_timeout_s)
+        self._pending = PendingRequests(settings.reply_timeout_s)
         self._loop = asyncio.get_running_loop()
         self._gone = asyncio.Event()
         self._abandoned = False
@@ -44,7 +46,7 @@ class GuardChild:
         # SEQPACKET keeps the messages apart: each is read whole or not at all, also one of a
         # process that is killed while it sends.
         self._link, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        memory = ring.create(ring_slots)
+        memory = ring.create(settings.ring_slots)
         self.reader = RingReader(memory)
         with theirs:
             # A fresh interpreter, not a fork: a fork would inherit the daemon's memory and locks.
@@ -67,6 +69,9 @@ class GuardChild:
         self._pid_descriptor = os.pidfd_open(self._process.pid)
         self._loop.add_reader(self._link, self._read)
         self._loop.add_reader(self._pid_descriptor, self._reap)
+        # One that has died already is told of by its end, like any other.
+        with contextlib.suppress(GuardDied):
+            self.send(set_up)
 
     @property
     def pid(self) -> int:
@@ -109,7 +114,17 @@ class GuardChild:
                 self._abandoned = True
                 self._process.kill()
                 raise
-        self._close()
+        self.close()
+
+    def close(self) -> None:
+        """Free what a process that has ended leaves here. Idempotent."""
+        if self._pid_descriptor < 0:
+            return
+        self._loop.remove_reader(self._link)
+        self._link.close()
+        os.close(self._pid_descriptor)
+        self._pid_descriptor = -1
+        self.reader.close()
 
     def _read(self) -> None:
         """Take all messages that wait.
@@ -144,16 +159,7 @@ class GuardChild:
         self._pending.fail(GuardDied(how))
         self._on_death(how)
         if self._abandoned:
-            self._close()
-
-    def _close(self) -> None:
-        if self._pid_descriptor < 0:
-            return
-        self._loop.remove_reader(self._link)
-        self._link.close()
-        os.close(self._pid_descriptor)
-        self._pid_descriptor = -1
-        self.reader.close()
+            self.close()
 
 
 class PendingRequests:

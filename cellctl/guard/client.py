@@ -1,6 +1,6 @@
 """The daemon's side of a guard: start it, ask it, read what it has seen, notice its death."""
 
-import asyncio
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,10 +11,13 @@ from cellctl.clock import now_s
 from cellctl.errors.base import CellError
 from cellctl.errors.force import GuardDied, SensorSilent
 from cellctl.force.gravity.gravity_compensation import GravityCompensation
+from cellctl.guard.ahead import ChildAhead
+from cellctl.guard.awaited_start import AwaitedStart
 from cellctl.guard.child import GuardChild
 from cellctl.guard.health import GuardHealth
 from cellctl.guard.limits import GuardLimits, GuardSettings
 from cellctl.guard.messages import (
+    OPEN,
     Message,
     fault_from_json,
     gravity_compensation_to_json,
@@ -54,16 +57,20 @@ class GuardClient:
         settling: Settling = USUAL,
     ) -> None:
         self.settling = settling
-        self._sensor = {"name": sensor_plugin, "config": sensor_config}
+        self._settings = settings
         stop = {"name": stop_plugin, "config": stop_config or {}}
-        self._stop = None if stop_plugin is None else stop
-        self._settings, self._module = settings, module
+        set_up = set_up_to_json(
+            {"name": sensor_plugin, "config": sensor_config},
+            None if stop_plugin is None else stop,
+            settings,
+        )
+        begin = partial(GuardChild, set_up, settings, self._take_event, self._died, module=module)
+        self._ahead = ChildAhead(begin)
         self._child: GuardChild | None = None
-        self._started: asyncio.Future[None] | None = None
-        """What ``start`` waits for: done when sensor and stop channel are open, or cannot be."""
-        self._stopping = self._ready = False
-        """Whether the end was asked for, and whether ``start`` has succeeded. A death counts as a
-        trip only if it comes after a start and was not asked for."""
+        self._start = AwaitedStart()
+        self._stopping = False
+        """Whether the end was asked for. A death counts as a trip only if it comes after a start
+        and was not asked for."""
         self._trip: GuardTrip | None = None
         self._fault: CellError | None = None
         """Why the guard could not start, or gave up its sensor."""
@@ -76,6 +83,10 @@ class GuardClient:
 
     # --- start and end
 
+    def load(self) -> None:
+        """Have the process of the next ``start`` load meanwhile; it opens nothing before that."""
+        self._ahead.begin()
+
     async def start(self) -> None:
         """Start the guard and wait until its sensor and its stop channel are open. Idempotent.
 
@@ -83,15 +94,15 @@ class GuardClient:
         """
         if self.running:
             return
-        await self.stop()
-        self._stopping = self._ready = False
+        if self._child is not None:
+            await self.stop()
+        self._stopping = False
         self._fault = self.hidden_axial_n = None
-        self._started = asyncio.get_running_loop().create_future()
-        slots, reply_s = self._settings.ring_slots, self._settings.reply_timeout_s
-        self._child = GuardChild(slots, reply_s, self._take_event, self._died, module=self._module)
+        settled = self._start.begin()
+        self._child = self._ahead.take()
         try:
-            self._child.send(set_up_to_json(self._sensor, self._stop, self._settings))
-            await self._until_started(self._started)
+            self._child.send(OPEN)
+            await self._start.until(settled, self._settings.start_timeout_s)
             await self._restore()
         # Also when the caller is cancelled: a guard that nobody knows of would keep sensor and stop
         # channel for itself.
@@ -106,10 +117,11 @@ class GuardClient:
     async def stop(self) -> None:
         """End the guard, which stops the robot. Idempotent."""
         self._stopping = True
+        await self._ahead.dismiss()
         if self._child is not None:
             child, self._child = self._child, None
             await child.quit()
-        self._settle_start(GuardDied("the guard was stopped"))
+        self._start.settle(GuardDied("the guard was stopped"))
 
     async def _restore(self) -> None:
         """Give a new process the gravity compensation and the wrench frame of the one before.
@@ -235,14 +247,6 @@ class GuardClient:
 
     # --- inside
 
-    async def _until_started(self, started: asyncio.Future[None]) -> None:
-        timeout_s = self._settings.start_timeout_s
-        try:
-            async with asyncio.timeout(timeout_s):
-                await started
-        except TimeoutError:
-            raise GuardDied(f"not ready within {timeout_s:g} s after its start") from None
-
     async def _request(self, do: str, wait_s: float = 0.0, **fields: Any) -> Any:
         return await self._require_child().ask({"do": do, **fields}, wait_s)
 
@@ -259,31 +263,21 @@ class GuardClient:
             self._serial, self._degraded = message["serial"], tuple(message["degraded"])
             # With a channel ``start`` goes on waiting, for the event that tells of the channel.
             if not message["has_channel"]:
-                self._settle_start(None)
+                self._start.settle(None)
         elif event == "channel":
             self._take_channel(up=message["up"], fault=message["fault"])
         else:  # failed: no start; sensor_fault: the sensor was given up
             self._fault = fault_from_json(message)
             _log.error("guard reports a fault", fault=str(self._fault), sensor=self._serial)
-            self._settle_start(self._fault)
+            self._start.settle(self._fault)
 
     def _take_channel(self, *, up: bool, fault: Message | None) -> None:
         if up:
-            self._settle_start(None)
+            self._start.settle(None)
         elif fault is not None:
             reason = fault_from_json(fault)
             _log.warning("stop channel is down", fault=str(reason), sensor=self._serial)
-            self._settle_start(reason)
-
-    def _settle_start(self, fault: CellError | None) -> None:
-        """End the wait of ``start``, if it still waits: with success, or with this fault."""
-        if self._started is None or self._started.done():
-            return
-        if fault is None:
-            self._ready = True
-            self._started.set_result(None)
-        else:
-            self._started.set_exception(fault)
+            self._start.settle(reason)
 
     def _latch(self, trip: GuardTrip) -> None:
         # The death stays until it is acknowledged: it is the reason why there is no guard.
@@ -292,9 +286,9 @@ class GuardClient:
         _log.warning("guard has stopped the robot", trip=str(trip), sensor=self._serial)
 
     def _died(self, how: str) -> None:
-        self._settle_start(GuardDied(how))
+        self._start.settle(GuardDied(how))
         # A death during the start is the failure of that start, and one that was asked for is none.
-        if self._ready and not self._stopping:
+        if self._start.succeeded and not self._stopping:
             # A fault that the guard has told before, such as a lost sensor, is not why it died.
             self._fault = None
             self._latch(GuardTrip(TripReason.GUARD_DIED, now_s(), how))

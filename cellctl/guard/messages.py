@@ -32,6 +32,10 @@ _LONGEST_BYTES = 65_536
 """Far above the longest message. A packet that is longer would be cut off."""
 
 
+OPEN: Message = {"do": "open"}
+"""Has a guard that was set up open sensor and stop channel, and guard."""
+
+
 def encode(message: Message) -> bytes:
     """The bytes of a message, for one packet."""
     # A limit that is not watched is infinite, which Python writes as ``Infinity``. That is no JSON,
@@ -51,7 +55,7 @@ def receive(link: socket.socket) -> Message | None:
 def set_up_to_json(
     sensor: Message, stop_channel: Message | None, settings: GuardSettings
 ) -> Message:
-    """The first message to a guard, from which it opens its devices.
+    """The first message to a guard, from which it loads its drivers; ``OPEN`` is the second.
 
     ``sensor`` and ``stop_channel`` hold the ``name`` of a plug-in and its ``config``. What only the
     daemon needs of the settings stays here.

@@ -2,7 +2,8 @@
 
 The arguments are the numbers of two inherited descriptors: the socket to the daemon and the shared
 memory of the ring. ``cellctl.guard.child`` starts the process and sends the set-up as the first
-message. The process ends when the daemon ends, and stops the robot then.
+message. The drivers that it names are loaded at once, and opened at the second message, which may
+come much later. The process ends when the daemon ends, and stops the robot then.
 """
 
 import os
@@ -13,7 +14,7 @@ import sys
 from cellctl import plugins
 from cellctl.errors.base import CellError
 from cellctl.errors.internal import Unexpected
-from cellctl.guard.messages import Message, encode, fault_to_json, receive
+from cellctl.guard.messages import OPEN, Message, encode, fault_to_json, receive
 from cellctl.guard.ring import RingWriter
 from cellctl.guard.watch import realtime
 from cellctl.guard.watch.loop import GuardLoop
@@ -52,7 +53,7 @@ def main(loop_type: type[GuardLoop] = GuardLoop) -> int:
 def run(
     link: socket.socket, memory: int, set_up: Message, loop_type: type[GuardLoop] = GuardLoop
 ) -> None:
-    """Open the sensor, begin to open the stop channel, and guard until the end.
+    """Load the drivers; once told, open the sensor, begin with the stop channel and guard.
 
     Raises what the sensor's driver raises when the sensor cannot be opened.
     """
@@ -63,8 +64,10 @@ def run(
     supervisor = StopSupervisor(channel, set_up["stop_confirm_s"])
     monitor = WrenchMonitor(tuple(set_up["flange_R_sensor"]), has_channel=channel is not None)
     ring = RingWriter(memory)
-    # Only after the set-up was received, which may be waited for. From here on a socket that blocks
-    # would hold up the judgement of samples.
+    if not _told_to_open(link):
+        return
+    # Only now, after what may be waited for. From here on a socket that blocks would hold up the
+    # judgement of samples.
     link.settimeout(0.0)
     with sensor:
         loop = loop_type(sensor, supervisor, monitor, ring=ring, link=link, beat_s=set_up["beat_s"])
@@ -82,6 +85,12 @@ def run(
             loop.run()
         finally:
             supervisor.close()
+
+
+def _told_to_open(link: socket.socket) -> bool:
+    """Wait for the daemon's word; False where it ends before it has a use for this guard."""
+    message = receive(link)
+    return message is not None and message["do"] == OPEN["do"]
 
 
 def _load(group: str, what: Message):  # type: ignore[no-untyped-def]
