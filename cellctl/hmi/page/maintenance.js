@@ -118,7 +118,9 @@ function draw(root, s, one) {
   root.querySelector("#mode-now").textContent = `${t("mode")}${colon()}${t(`mode_${s.mode}`)} · ${given(`state_${s.state}`, s.state)}`;
   progress(root, s, at);
   write(root.querySelector("#outcome"), outcome(s, at));
-  if (at === "under_way") { ticks.clear(); for (const box of root.querySelectorAll("[id^=tick-]")) box.checked = false; }
+  // Under way an empty box would look like something that is still to be done; the next start wants every tick anew.
+  if (at === "under_way") ticks.clear();
+  for (const box of root.querySelectorAll("[id^=tick-]")) { box.hidden = at === "under_way"; box.checked = ticks.has(Number(box.id.slice(5))); }
   const last = s.last_command;
   root.querySelector("#who-runs").textContent = at === "under_way" && last ? t("last_command", t("asked_last"), last.who?.replace(/^page:/, ""), `${given(`cmd_${last.command}`, last.command)} ${time(last.time)}`) : "";
 }
