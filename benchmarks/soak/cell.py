@@ -42,6 +42,8 @@ class SoakedCell:
     daemon: Program
     page: Program
     cycles: list[Cycle] = field(default_factory=list)
+    _serials: int = 0
+    """Serial numbers given so far."""
     _kept: dict[str, list[Kept]] = field(default_factory=dict)
     _pids: dict[str, int] = field(default_factory=dict)
 
@@ -71,15 +73,20 @@ class SoakedCell:
         """Cycles until the time is over; raises ``Died``."""
         begun_s = time.monotonic()
         while time.monotonic() - begun_s < 60.0 * minutes:
-            good, said = self.part(len(self.cycles) + 1)
+            good, said = self.part()
             self._look()
             self.cycles.append(Cycle(time.monotonic() - begun_s, good, said))
             told(self.cycles[-1])
         times_s = [cycle.time_s for cycle in self.cycles]
         return [Looked(name, times_s, found) for name, found in self._kept.items()]
 
-    def part(self, number: int) -> tuple[bool, str]:
-        """Make the part with this number: whether it is good, and else what the line said."""
+    def new_serial(self) -> str:
+        """A serial number that no part of this cell has, whoever has them made."""
+        self._serials += 1
+        return f"SAT-{self._serials:04d}"
+
+    def part(self) -> tuple[bool, str]:
+        """Make a part: whether it is good, and else what the line said."""
         with OutsidePlc(self.own.modbus_port) as line:
             line.start_heartbeat()
             line.seq = line.value("ack_seq")
@@ -88,7 +95,7 @@ class SoakedCell:
             _bring_to_idle(line)
         with self.own.control() as control:
             control.request("load")
-        plc = self.own.plc("--serial", f"SAT-{number:04d}", "--timeout", CYCLE_S)
+        plc = self.own.plc("--serial", self.new_serial(), "--timeout", CYCLE_S)
         good = plc.end(float(CYCLE_S) + 60.0) == 0
         said = "" if good else (plc.stdout + plc.stderr)[-400:]
         self.own.programs.remove(plc)
