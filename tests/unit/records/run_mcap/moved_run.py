@@ -1,10 +1,12 @@
 """A run as a cell leaves it: motion, forces, registers, images and rims beside the record."""
 
 import io
+from collections.abc import Sequence
 from datetime import timedelta
 
 import numpy as np
 import zstandard
+from numpy.typing import NDArray
 
 from cellctl.calibration.store.envelope import StoredCalibration
 from cellctl.clock import now_s, utc_now
@@ -19,6 +21,8 @@ from cellctl.records.files.raw_images import MEDIA_TYPE as RAW_IMAGE
 from cellctl.records.files.unfinished import MOTION
 from cellctl.records.looks import MeasuredRim, TakenImage, documents_of_look
 from tests.unit.records.sample import fill
+
+Pixels = NDArray[np.uint8]
 
 SAMPLES = 200
 REPORTS = 20
@@ -75,7 +79,7 @@ def report(time_s: float, place: tuple[float, ...]) -> RobotState:
     )  # fmt: skip
 
 
-def open_run(store: RunStore) -> int:
+def open_run(store: RunStore, pixels: Pixels = PIXELS, rims: Sequence[MeasuredRim] = RIMS) -> int:
     """A run that is still open, with everything recorded but its motion."""
     now = utc_now()
     record = {"base_T_c1": {"matrix_mm": BASE_T_C1.tolist()}, "verdict": "pass"}
@@ -89,9 +93,9 @@ def open_run(store: RunStore) -> int:
     )  # fmt: skip
     fill(store, run, b"\x89PNG\r\n\x1a\n")
     taken = {FILE: TakenImage("frame", VIEW, utc_now())}
-    store.add(run, *documents_of_look("frame", taken, {VIEW: RIMS}))
+    store.add(run, *documents_of_look("frame", taken, {VIEW: rims}))
     store.add(run, RecordedPose("frame", PoseOrigin.REPORTED, "base", "flange", PLACE))
-    plain = b"P5 %d %d 255\n" % (PIXELS.shape[1], PIXELS.shape[0]) + PIXELS.tobytes()
+    plain = b"P5 %d %d 255\n" % (pixels.shape[1], pixels.shape[0]) + pixels.tobytes()
     store.add_artefact(run, FILE, zstandard.compress(plain), RAW_IMAGE)
     store.add_alarm(run, 512, "F512 Force limit exceeded: 50.8 N")
     return run
