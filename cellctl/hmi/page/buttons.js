@@ -101,7 +101,8 @@ function startDialog() {
   const before = h("p", { id: "used-before", class: "bad", role: "status" });
   serial.addEventListener("change", () => earlier(serial, before));
   const recipe = h("select", { id: "recipe" }, recipes.map((one) => h("option", { value: one.number }, `${one.number} ${one.name}`)));
-  const dry = h("input", { type: "checkbox", id: "dry" });
+  const told = h("p", { role: "status" }, t("does_start"));
+  const dry = h("input", { type: "checkbox", id: "dry", onchange: () => write(told, t(dry.checked ? "does_dry_run" : "does_start")) });
   const dialog = h("dialog", { "aria-label": t("cmd_start") });
   const go = longPress(h("button", { type: "button" }, t("start_hold")), () => {
     if (!serial.reportValidity() || !mate.reportValidity()) return;
@@ -110,7 +111,7 @@ function startDialog() {
   });
   dialog.append(h("h2", {}, t("cmd_start")), h("form", { onsubmit: (event) => event.preventDefault() },
     h("label", {}, t("serial"), serial), h("label", {}, t("mate_serial"), mate), h("label", {}, t("recipe"), recipe), h("label", { class: "tick" }, dry, h("span", {}, t("dry_run")))),
-  before, h("p", {}, t("does_start")), h("p", { class: "dim" }, validUntil()), h("div", { class: "row" }, go,
+  before, told, h("p", { class: "dim" }, validUntil()), h("div", { class: "row" }, go,
     h("button", { type: "button", onclick: () => dialog.close() }, t("cancel"))));
   dialog.addEventListener("close", () => dialog.remove());
   document.body.append(dialog);

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from playwright.sync_api import expect
 
+from cellctl.api.local_socket.messages import StartCommand
 from cellctl.records.database.schema_version import FILE
 from tests.unit.hmi.page.screen import Screen
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
@@ -89,6 +90,20 @@ def test_a_start_tells_of_an_earlier_run_of_this_serial_number(screen: Screen) -
     tab.fill("#serial", "SAT-22")
     tab.locator("#serial").press("Tab")
     expect(before).to_be_empty()
+
+
+def test_a_dry_run_is_not_said_to_assemble(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    screen.button("start").click()
+    dialog = screen.tab.locator("dialog")
+    expect(dialog).to_contain_text("Robots measure and assemble.")
+    screen.tab.check("#dry")
+    expect(dialog).to_contain_text("Nothing is assembled.")
+    expect(dialog).not_to_contain_text("measure and assemble")
+    screen.tab.fill("#serial", "SAT-0042")
+    screen.press(dialog.locator(".row button").first, 1.4)
+    expect(screen.tab.locator("[data-command=start] small")).to_contain_text("taken")
+    assert paper.asked[0].command == StartCommand(serial="SAT-0042", recipe="1", dry_run=True)
 
 
 def test_limits_have_their_unit(screen: Screen) -> None:
