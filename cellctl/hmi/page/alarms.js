@@ -28,7 +28,7 @@ function one(alarm, first, firstSince) {
   const reason = whyNot("acknowledge");
   // Those that stand here when it is pressed: one that has come since stays.
   const seen = (event) => Number(event.target.closest(".alarm").querySelector(".times").dataset.times);
-  return h("div", { class: `alarm fresh${first ? " first" : ""}`, "data-number": alarm.number },
+  return h("div", { class: `alarm fresh${first ? " first" : ""}`, "data-number": alarm.number, "data-priority": level },
     h("h2", {}, h("span", { class: `mark p${level}` }, MARKS[level]), ` ${spoken(alarm.text)}`),
     h("p", { class: "dim" }, first ? t("first_out") : when, ` · ${time(alarm.since)}`,
       alarm.run ? ` · ${t("run", alarm.run)}` : "", latched ? ` · ${held}` : "", h("span", { class: "times" })),

@@ -27,6 +27,10 @@ export function shown(value, digits = 3) {
   return typeof value === "number" && Number.isFinite(value) ? value.toFixed(digits).replace(/^-(0\.?0*)$/, "$1") : "—";
 }
 
+// Digits that tell a value from its limit: a limit that is rounded must not look wider than it is.
+const DIGITS = { "°": 4, "µm": 1 };
+export const digitsOf = (unit) => DIGITS[unit] ?? 3;
+
 // Year, month, day and 24 hours, which nobody mistakes, in every language of the page.
 const CLOCK = "sv-SE";
 const TWO = "2-digit";

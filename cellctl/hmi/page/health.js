@@ -2,10 +2,10 @@
 
 import { ask } from "./api.js";
 import { give, visitor, whyNot } from "./buttons.js";
-import { h, num, shown, table, time } from "./dom.js";
+import { h, num, shown, table, time, write } from "./dom.js";
 import { ageS, cell } from "./live.js";
 import { alive } from "./line.js";
-import { given, label, spoken, t } from "./texts.js";
+import { colon, given, label, spoken, t } from "./texts.js";
 
 // A command has the word of its button; what it was about stands behind it.
 function done({ action, detail }) {
@@ -43,9 +43,9 @@ async function more(root) {
 }
 
 export function build(root) {
-  const modes = ["production", "maintenance", "manual"].map((mode) => h("button", { type: "button", class: "mode", onclick: () => give("mode", { request: "mode", mode }) }, t(`mode_${mode.toUpperCase()}`)));
+  const modes = ["production", "maintenance", "manual"].map((mode) => h("button", { type: "button", class: "mode", "data-mode": mode.toUpperCase(), onclick: () => give("mode", { request: "mode", mode }) }, t(`mode_${mode.toUpperCase()}`)));
   root.replaceChildren(h("section", { class: "half", id: "links" }), h("section", { class: "half", id: "process" }),
-    h("section", {}, h("h2", {}, t("mode")), h("div", { class: "row" }, modes), h("p", { class: "dim", id: "mode-why" })), h("section", { id: "audit" }, h("p", { class: "dim" }, t("audit_needs"))));
+    h("section", {}, h("h2", {}, t("mode"), h("span", { class: "live", id: "mode-now" })), h("div", { class: "row" }, modes), h("p", { class: "dim", id: "mode-why" })), h("section", { id: "audit" }, h("p", { class: "dim" }, t("audit_needs"))));
   more(root);
   update(root);
 }
@@ -61,5 +61,9 @@ export function update(root) {
   place.replaceChildren(h("h2", {}, t("links")), h("div", { class: "live" }, table([t("device"), t("state"), num(t("age"))], rows)));
   const reason = whyNot("mode");
   root.querySelector("#mode-why").textContent = reason;
-  for (const button of root.querySelectorAll("button.mode")) button.disabled = Boolean(reason);
+  write(root.querySelector("#mode-now"), `${colon()}${s.mode ? given(`mode_${s.mode}`, s.mode) : "—"}`);
+  for (const button of root.querySelectorAll("button.mode")) {
+    button.disabled = Boolean(reason);
+    button.setAttribute("aria-pressed", button.dataset.mode === s.mode);
+  }
 }

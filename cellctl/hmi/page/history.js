@@ -1,7 +1,7 @@
 // Runs: search, one of them in figures, its report.
 
 import { ask } from "./api.js";
-import { corrected, h, num, shown, table, time } from "./dom.js";
+import { corrected, digitsOf, h, num, shown, table, time } from "./dom.js";
 import { given, label, t } from "./texts.js";
 
 const PAGE = 30;
@@ -101,13 +101,14 @@ function seal(as) {
 
 function within(lower, upper, unit) {
   const given = (value) => typeof value === "number";
-  if (given(lower) && given(upper)) return `${shown(lower)} … ${shown(upper)} ${unit}`;
-  return given(upper) ? `≤ ${shown(upper)} ${unit}` : given(lower) ? `≥ ${shown(lower)} ${unit}` : "—";
+  const said = (value) => shown(value, digitsOf(unit));
+  if (given(lower) && given(upper)) return `${said(lower)} … ${said(upper)} ${unit}`;
+  return given(upper) ? `≤ ${said(upper)} ${unit}` : given(lower) ? `≥ ${said(lower)} ${unit}` : "—";
 }
 
 function figures(run) {
   if (!run.figures.length) return "";
-  return table([t("figure"), num(t("value")), t("limits"), t("verdict")], run.figures.map((one) => [one.label, num(`${shown(one.value)} ${one.unit}`),
+  return table([t("figure"), num(t("value")), t("limits"), t("verdict")], run.figures.map((one) => [one.label, num(`${shown(one.value, digitsOf(one.unit))} ${one.unit}`),
     within(one.lower, one.upper, one.unit), one.verdict ? verdict(one.verdict) : "—"]));
 }
 

@@ -2,7 +2,7 @@
 
 import { ask } from "./api.js";
 import { commands, refresh } from "./buttons.js";
-import { bar, h, num, shown, svg, table } from "./dom.js";
+import { bar, digitsOf, h, num, shown, svg, table } from "./dom.js";
 import { cell } from "./live.js";
 import { colon, given, label, t } from "./texts.js";
 
@@ -62,7 +62,7 @@ setInterval(() => { if (onScreen()) { lookForPictures(); lookForLeft(); } }, 400
 function plot(index, limit) {
   const points = curve.map(([s, values]) => [s, values[index]]);
   const values = points.map((point) => point[1]).filter((value) => value !== null && value !== undefined);
-  const low = Math.min(0, ...values);
+  const low = Math.min(0, ...values) * 1.1;
   const high = Math.max(1, limit || 0, ...values) * 1.1;
   const end = curve.length ? curve[curve.length - 1][0] : 0;
   const x = (s) => (300 * (1 - (end - s) / CURVE_S)).toFixed(1);
@@ -86,7 +86,7 @@ function state(s) {
   const mark = s.state.startsWith("ABORT") ? "■ " : waiting ? "● " : "";
   const run = s.run.number ? t("run_line", s.run.number, s.run.serial || "—", t(`result_${s.run.result}`)) : t("no_run");
   return [h("div", { class: `state live${colour}`, id: "state", "data-state": s.state }, mark + word + to),
-    h("p", { class: "live", id: "step" }, s.step.label ? t("step_line", s.step.number, label(s.step.label), s.pass || "—") : t("no_step")),
+    h("p", { class: "live", id: "step" }, s.step.label ? [t("step_line", s.step.number, label(s.step.label)), s.pass && t("pass", s.pass)].filter(Boolean).join(" · ") : t("no_step")),
     h("p", { class: "live" }, run), s.step.text ? h("p", { class: "live" }, label(s.step.text)) : null,
     h("p", { class: "dim" }, `${t(`mode_${s.mode}`)} · ${t(`control_${s.control}`)} · ${t("good_parts", s.run.good_parts)}`),
     ...s.forces.filter((one) => one.presses_n).map((one) => h("p", { class: "bad pressing" }, `■ ${t("presses", shown(one.presses_n, 1), one.sensor)}`)),
@@ -115,8 +115,12 @@ function force(force, index) {
 }
 
 function errors(s) {
-  const rows = s.errors.map((one) => [one.axis, num(`${shown(one.value, one.unit === "mm" ? 3 : 4)} ${one.unit}`), num(shown(one.limit)), bar(one.value, one.limit)]);
-  return [h("h2", {}, t("errors", s.pass || "—")), h("div", { class: "live", id: "errors" }, table([t("axis"), num(t("error")), num(t("limit")), t("bar")], rows))];
+  const said = (value, unit) => shown(value, digitsOf(unit));
+  const rows = s.errors.map((one) => [one.axis, num(`${said(one.value, one.unit)} ${one.unit}`), num(said(one.limit, one.unit)), bar(one.value, one.limit)]);
+  // After its loop a run shows the errors with which the loop has ended.
+  const known = s.errors.some((one) => typeof one.value === "number");
+  const of = s.pass ? t("pass", s.pass) : known ? t("last_pass") : "";
+  return [h("h2", {}, [t("errors"), of].filter(Boolean).join(" · ")), h("div", { class: "live", id: "errors" }, table([t("axis"), num(t("error")), num(t("limit")), t("bar")], rows))];
 }
 
 function shots() {

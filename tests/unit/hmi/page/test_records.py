@@ -12,6 +12,8 @@ from cellctl.records.database.schema_version import FILE
 from tests.unit.hmi.page.screen import Screen
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
 
+MATING = {"number": 50, "label": "mate", "text": ""}
+
 
 def test_past_alarms_say_when_and_by_whom_they_were_acknowledged(
     screen: Screen, paper: PaperDaemon
@@ -118,6 +120,43 @@ def test_what_rounds_to_zero_has_no_sign(screen: Screen, paper: PaperDaemon) -> 
     paper.snapshot = snapshot(errors=[error, error | {"value": -0.0006}])
     values = screen.tab.locator("#errors tbody td:nth-child(2)")
     expect(values).to_have_text(["0.000 mm", "-0.001 mm"])
+
+
+def test_an_error_is_told_apart_from_its_limit_and_says_of_which_pass_it_is(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    error = {"axis": "rx", "unit": "°", "value": 0.0058, "limit": 0.0057}
+    paper.snapshot = snapshot(errors=[error], step=MATING, state="EXECUTE") | {"pass": 3}
+    cells = screen.tab.locator("#errors tbody td")
+    expect(cells).to_have_text(["rx", "0.0058 °", "0.0057", ""])
+    heading = screen.tab.locator("#deviation h2")
+    expect(heading).to_have_text("Error against limit · pass 3")
+    expect(screen.tab.locator("#step")).to_have_text("Step 50: mate · pass 3")
+    paper.snapshot = paper.snapshot | {"pass": 0}
+    expect(heading).to_have_text("Error against limit · last pass")
+    expect(screen.tab.locator("#step")).to_have_text("Step 50: mate")
+    paper.snapshot = paper.snapshot | {"errors": [error | {"value": None, "limit": None}]}
+    expect(heading).to_have_text("Error against limit")
+
+
+def test_an_alarm_has_the_colour_of_its_priority(screen: Screen, paper: PaperDaemon) -> None:
+    alarms = [alarm(512, "Force limit exceeded"), alarm(635, "warns", reaction="warn")]
+    paper.snapshot = snapshot(alarms=alarms)
+    screen.tab.goto(f"{screen.url}#alarms")
+    stripes = screen.tab.locator(".alarm")
+    expect(stripes.first).to_have_css("border-left-color", "rgb(166, 15, 20)")
+    expect(stripes.last).to_have_css("border-left-color", "rgb(68, 73, 78)")
+
+
+def test_health_says_which_mode_the_cell_has(screen: Screen, paper: PaperDaemon) -> None:
+    paper.snapshot = snapshot(mode="MAINTENANCE")
+    screen.sign_in("boris")
+    screen.tab.goto(f"{screen.url}#health")
+    expect(screen.tab.locator("#mode-now")).to_contain_text("Maintenance")
+    pressed = screen.tab.locator("button.mode[aria-pressed=true]")
+    expect(pressed).to_have_text("Maintenance")
+    paper.snapshot = snapshot(mode="MANUAL")
+    expect(pressed).to_have_text("Manual")
 
 
 def test_a_register_without_a_value_shows_a_dash(screen: Screen) -> None:
