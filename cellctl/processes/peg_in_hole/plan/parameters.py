@@ -19,6 +19,8 @@ _TOUCH_N = 8.0
 it."""
 _FASTEST_SLIDE_M_S = 5e-3
 """No slide over a face is faster, however wide the catch radius is (section 3.2)."""
+_LEAST_SPIRAL_SHARE = 0.4
+"""Of the press, in a spiral: with less a lost face would not stand out of the noise."""
 _SIDE_N = 5.0
 """Force with which the peg is held against the outer face of a plug (section 3.6)."""
 STANDS_M = 0.05e-3
@@ -36,6 +38,7 @@ class SearchParameters:
     catch: Derived
     pitch: Derived
     slide_speed: Derived
+    spiral_press: Derived
     side_force: Derived
     tilt: Derived
     tilted_dip: Derived
@@ -62,7 +65,7 @@ def search_parameters(task: SearchTask) -> SearchParameters:
     radius_m, catch_m = fit.peg_radius_m, fit.catch_radius_m
     entry_m = fit.entry_depth_m
     press_n = min(_TOUCH_N, task.limits.search_n)
-    stiffness, dead_s = cell.stiffness_n_m, cell.dead_time_s
+    stiffness, dead_s, friction = cell.stiffness_n_m, cell.dead_time_s, cell.friction
     loop = {"k": stiffness, "θ": dead_s, "t_det": DETECTION_S}
     # The dip has to stand out of the noise of a height. In the study a tilt of 3° found 82 % of the
     # holes, one of 5 to 12° at least 99.7 % (section 3.3).
@@ -98,6 +101,15 @@ def search_parameters(task: SearchTask) -> SearchParameters:
             "m/s",
             "min(5 mm/s, 0.96 C / (t_det + θ / 2))",
             {"C": catch_m, "θ": dead_s, "t_det": DETECTION_S},
+        ),
+        # Friction holds a peg back by μ F / k, and edges that cross in a tight mouth by more: where
+        # that is much of the catch radius, whole turns of a spiral would only bend the arm.
+        Derived(
+            "press of a spiral",
+            min(press_n, max(_LEAST_SPIRAL_SHARE * press_n, 0.5 * catch_m * stiffness / friction)),
+            "N",
+            "min(F, max(0.4 F, C k / 2 μ))",
+            {"F": press_n, "C": catch_m, "k": stiffness, "μ": friction},
         ),
         Derived("side force", _SIDE_N, "N", "5 N", {}),
         Derived("tilt", tilt_rad, "rad", "clamp(max(0.4 mm, 28 σ_z) / r, 4°, 12°)", heights),

@@ -218,13 +218,15 @@ class TouchProbe:
     async def spiral(self, centre_m: Array, radius_m: float) -> bool:
         """Expanding spiral of an upright peg that stands on the face; True when it has entered."""
         parameters = self.parameters
+        share = parameters.spiral_press.value / self.press_n
         for way_m, speed_m_s in expanding_turns(
             radius_m, parameters.pitch.value, parameters.slide_speed.value
         ):
             rest_m = way_m + centre_m
             while len(rest_m):
-                lost = LostSupport(self.press_n)
-                motion = await self.slide(rest_m, speed_m_s, either(lost, self.walled))
+                lost = LostSupport(parameters.spiral_press.value)
+                until = either(lost, self.walled)
+                motion = await self.slide(rest_m, speed_m_s, until, share=share)
                 if motion.ended is Ended.TRAVEL:
                     break
                 if await self._enters_between(lost.begin, motion.last):

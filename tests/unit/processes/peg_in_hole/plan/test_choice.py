@@ -86,7 +86,7 @@ def test_noisy_heights_refuse_tilted_touches() -> None:
 
 def test_every_parameter_says_where_it_comes_from() -> None:
     record = choose_search(pin()).to_record()
-    assert len(record["parameters"]) == 14
+    assert len(record["parameters"]) == 15
     assert all(entry["formula"] for entry in record["parameters"] + record["estimates"])
 
 
