@@ -42,20 +42,22 @@ function title(text) { return spoken(text).split(/: |：/)[0]; }
 function band() {
   const place = $("band");
   const s = cell.snapshot;
-  let [kind, text] = ["", ""];
+  let [kind, text, others] = ["", "", ""];
   if (stale()) {
     kind = "p1";
     text = cell.refused ? t(cell.refused) : t("stale", Math.round(Number.isFinite(ageS()) ? ageS() : (performance.now() - since) / 1000));
   } else if (s.alarms.length) {
-    const [gravest, ...others] = alarms.byGravity(s.alarms, s.faults[0]?.number);
+    const [gravest, ...less] = alarms.byGravity(s.alarms, s.faults[0]?.number);
     kind = `p${alarms.priority(gravest)}`;
     // Each by its title: one of them may be what somebody has to know before the first one is cleared.
-    text = [`${alarms.mark(gravest)} ${spoken(gravest.text)}`, ...others.map((one) => `${alarms.mark(one)} ${title(one.text)}`)].join(" · ");
+    text = `${alarms.mark(gravest)} ${spoken(gravest.text)}`;
+    others = less.map((one) => ` · ${alarms.mark(one)} ${title(one.text)}`).join("");
   } else if (s.stop_not_confirmed) [kind, text] = ["p1", t("stop_not_confirmed")];
-  if (place.dataset.text === text && place.className === kind) return;
+  if (place.dataset.text === text + others && place.className === kind) return;
   place.className = kind;
-  place.dataset.text = text;
-  place.replaceChildren(text ? h("a", { href: "#alarms" }, text) : "");
+  place.dataset.text = text + others;
+  // The others have a line of their own: however long the gravest is, it hides none of them, and they hide nothing of it.
+  place.replaceChildren(text ? h("a", { href: "#alarms" }, h("span", {}, text), others ? h("span", {}, others) : null) : "");
 }
 
 function refresh() {

@@ -75,7 +75,7 @@ function plot(index, limit) {
     pen = "L";
   }
   return svg("svg", { class: "curve", viewBox: "0 0 300 100", preserveAspectRatio: "none", role: "img", "aria-label": t("force_curve", CURVE_S) },
-    limit ? svg("line", { x1: 0, x2: 300, y1: y(limit), y2: y(limit) }) : null, svg("path", { d: path || "M0 0" }));
+    (limit ? [limit, -limit] : []).filter((one) => one >= low).map((one) => svg("line", { x1: 0, x2: 300, y1: y(one), y2: y(one) })), svg("path", { d: path || "M0 0" }));
 }
 
 function state(s) {

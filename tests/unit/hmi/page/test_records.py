@@ -12,6 +12,11 @@ from cellctl.records.database.schema_version import FILE
 from tests.unit.hmi.page.screen import Screen
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
 
+LINES = """(place) => {
+    const text = document.createRange();
+    text.selectNodeContents(place);
+    return new Set([...text.getClientRects()].map((one) => Math.round(one.top))).size;
+}"""
 MATING = {"number": 50, "label": "mate", "text": ""}
 
 
@@ -146,6 +151,53 @@ def test_an_alarm_has_the_colour_of_its_priority(screen: Screen, paper: PaperDae
     stripes = screen.tab.locator(".alarm")
     expect(stripes.first).to_have_css("border-left-color", "rgb(166, 15, 20)")
     expect(stripes.last).to_have_css("border-left-color", "rgb(68, 73, 78)")
+
+
+def test_a_force_is_drawn_against_its_limit_on_either_side(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    expect(screen.tab.locator("svg.curve line")).to_have_count(1)
+    (force,) = snapshot()["forces"]
+    pressed = {"axis": "Fz", "unit": "N", "value": -61.0, "limit": None}
+    paper.snapshot = snapshot(forces=[force | {"wrench": [pressed]}])
+    expect(screen.tab.locator("svg.curve line")).to_have_count(2)
+
+
+def test_however_many_alarms_there_are_the_band_cuts_none_off_at_its_edge(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    detail = "head_1, frame server 127.0.0.1:26259: no complete reply within 60 s"
+    silent = alarm(205, f"Device did not reply in time: {detail}")
+    warned = alarm(635, "payload invalidated, for a force limit was exceeded", reaction="warn")
+    paper.snapshot = snapshot(alarms=[warned, alarm(512, "Force limit exceeded"), silent])
+    lines = screen.tab.locator("#band span")
+    for width in (1280, 768):
+        screen.tab.set_viewport_size({"width": width, "height": 1024})
+        expect(lines.first).to_contain_text("■1 F512")
+        expect(lines.last).to_contain_text("▼3 F635")
+        band = screen.tab.locator("#band").bounding_box()
+        for line in lines.all():
+            box = line.bounding_box()
+            assert box["y"] >= band["y"]
+            assert box["y"] + box["height"] <= band["y"] + band["height"]
+
+
+def test_the_days_of_a_procedure_s_calibrations_are_whole(
+    screen: Screen, paper: PaperDaemon
+) -> None:
+    problem = "F602 Calibration has expired: head on 2026-10-01"
+    one = paper.description["calibrations"][0] | {"problem": problem}
+    paper.description = paper.description | {"calibrations": [one]}
+    days = screen.tab.locator("#renewed tbody td:nth-child(2)")
+    for width in (1280, 1024):
+        screen.tab.set_viewport_size({"width": width, "height": 800})
+        screen.tab.goto(f"{screen.url}#maintenance/101")
+        expect(days).to_contain_text("2026-01-02")
+        wide, seen = screen.tab.locator("#renewed .scroll").evaluate(
+            "(one) => [one.scrollWidth, one.clientWidth]"
+        )
+        assert wide <= seen + 1
+        assert days.evaluate(LINES) <= 3, "the day, the hour and its zone"
 
 
 def test_health_says_which_mode_the_cell_has(screen: Screen, paper: PaperDaemon) -> None:
