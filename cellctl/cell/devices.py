@@ -12,7 +12,6 @@ from cellctl.cell.driver_object import drivers_of
 from cellctl.cell.gather import gather_named, gather_or_cancel
 from cellctl.cell.guarded_robot import GuardedRobot
 from cellctl.cell.lighting.lit_cameras import Lights
-from cellctl.cell.patience.calls import answer_within
 from cellctl.cell.patience.patient_devices import (
     PatientCamera,
     PatientGripper,
@@ -25,6 +24,7 @@ from cellctl.cell.robot_layers.noted_robot import RobotNotes
 from cellctl.cell.robot_layers.permitted_robot import permitted
 from cellctl.cell.robot_layers.slowed_robot import MaintenancePace, slowed
 from cellctl.cell.run_notes import RunNotes
+from cellctl.cell.silent_devices import unanswered
 from cellctl.cell.stereo_station import StereoStation
 from cellctl.cell.time_limits import USUAL, TimeLimits
 from cellctl.cell.zones.zoned_robot import zoned_robots
@@ -105,9 +105,13 @@ class Cell:
         sensor, folder = self.config.force_sensors[name], self.zero_folder
         carrier, zero_file = sensor.mounted_on, folder and folder / f"{name}.json"
         return GuardedRobot(
-            self.robots[carrier], self.config.robots[carrier], name, self.guards[name], sensor,
+            self.robots[carrier],
+            self.config.robots[carrier],
+            name,
+            self.guards[name],
+            sensor,
             zero_file,
-        )  # fmt: skip
+        )
 
     @contextmanager
     def trips_awaited(self, sensor_name: str) -> Iterator[None]:
@@ -149,19 +153,7 @@ class Cell:
         }
         questions |= {name: gripper.state() for name, gripper in self.grippers.items()}
         questions |= {name: io.read() for name, io in self.digital_ios.items()}
-        # One device that hangs must not hide the answers of the others, so every question has its
-        # own time-out and no fault ends the round.
-        ask_s = self.time_limits.ask_s
-        asked = (answer_within(question, name, ask_s) for name, question in questions.items())
-        answers = await asyncio.gather(*asked, return_exceptions=True)
-        self.unanswered = {}
-        for name, answer in zip(questions, answers, strict=True):
-            if isinstance(answer, CellError):
-                self.unanswered[name] = answer
-            elif isinstance(answer, BaseException):
-                # Not a fault of a device but a defect or a cancellation: it must not look like a
-                # device that is silent.
-                raise answer
+        self.unanswered = await unanswered(questions, self.time_limits.ask_s)
 
     async def connect(self) -> None:
         """Connect everything at once, or nothing; raises one fault that names every failing device.

@@ -4,7 +4,7 @@ import asyncio
 import select
 import time
 from collections.abc import AsyncIterator, Callable
-from contextlib import AbstractAsyncContextManager
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
 
 import numpy as np
 import pytest
@@ -32,6 +32,19 @@ def config(timeout_s: float = 2.0) -> SiasunStopChannelConfig:
     return SiasunStopChannelConfig(
         robot_name="SR500A", guard_port=free_ports(1)[0], connect_timeout_s=timeout_s
     )
+
+
+@asynccontextmanager
+async def guard_of(rig: Rig | JobRig) -> AsyncIterator[SiasunStopChannel]:
+    """The guard's channel beside the robot's own two; the controller calls on all of them."""
+    channel = SiasunStopChannel(rig.guard)
+    opening = asyncio.create_task(asyncio.to_thread(channel.open))
+    await rig.connect()
+    await opening
+    try:
+        yield channel
+    finally:
+        channel.close()
 
 
 @pytest.fixture
@@ -229,11 +242,7 @@ async def test_angles_are_read_in_the_order_that_the_hello_names(
 async def test_the_guard_stops_the_fake_controller(
     make: Callable[..., AbstractAsyncContextManager[Rig | JobRig]],
 ) -> None:
-    async with make(channels=("CMD", "STA", "GRD")) as rig:
-        channel = SiasunStopChannel(rig.guard)
-        opening = asyncio.create_task(asyncio.to_thread(channel.open))
-        await rig.connect()
-        await opening
+    async with make(channels=("CMD", "STA", "GRD")) as rig, guard_of(rig) as channel:
         here = rig.robot.state().base_T_flange
         moving = asyncio.create_task(
             rig.robot.move_linear(
@@ -249,34 +258,27 @@ async def test_the_guard_stops_the_fake_controller(
             channel.heartbeat()
         with pytest.raises(MotionAborted, match="STOP"):
             await moving
-        channel.close()
 
 
 @pytest.mark.parametrize("make", [sjl_rig, job_rig], ids=["records", "jobs"])
 async def test_the_death_of_the_guard_stops_the_fake_controller(
     make: Callable[..., AbstractAsyncContextManager[Rig | JobRig]],
 ) -> None:
-    async with make(channels=("CMD", "STA", "GRD")) as rig:
-        channel = SiasunStopChannel(rig.guard)
-        opening = asyncio.create_task(asyncio.to_thread(channel.open))
-        await rig.connect()
-        await opening
+    async with make(channels=("CMD", "STA", "GRD")) as rig, guard_of(rig):
         here = rig.robot.state().base_T_flange
         target = pose_from_xyzabc([0, 0, 100, 0, 0, 0]) * here
         moving = rig.robot.move_linear(target, speed_m_s=0.05, acceleration_m_s2=1.0)
         async with asyncio.timeout(2.0):
             with pytest.raises(MotionAborted, match="DEADMAN"):
                 await moving
-        channel.close()
 
 
 async def test_repeated_stops_do_not_pile_up_before_a_slow_interpreter() -> None:
     """Each would be a stop of its own, and those that are read late one after the release."""
-    async with job_rig(channels=("CMD", "STA", "GRD"), statement_s=0.001) as rig:
-        channel = SiasunStopChannel(rig.guard)
-        opening = asyncio.create_task(asyncio.to_thread(channel.open))
-        await rig.connect()
-        await opening
+    async with (
+        job_rig(channels=("CMD", "STA", "GRD"), statement_s=0.001) as rig,
+        guard_of(rig) as channel,
+    ):
         states: list[FlangeState] = []
         wanted = True
 
@@ -305,16 +307,11 @@ async def test_repeated_stops_do_not_pile_up_before_a_slow_interpreter() -> None
         # The first of them may be as old as the release.
         assert not any(state.stop_latched for state in states[known + 1 :])
         assert rig.controller.memory.numbers["I", 62] == 1
-        channel.close()
 
 
 async def test_a_stop_that_was_overheard_is_repeated() -> None:
-    async with job_rig(channels=("CMD", "STA", "GRD")) as rig:
+    async with job_rig(channels=("CMD", "STA", "GRD")) as rig, guard_of(rig) as channel:
         rig.controller.faults.inject("ignore_stop", count=1)
-        channel = SiasunStopChannel(rig.guard)
-        opening = asyncio.create_task(asyncio.to_thread(channel.open))
-        await rig.connect()
-        await opening
         channel.request_stop()
         async with asyncio.timeout(3.0):
             while not ((state := channel.poll()) and state.stop_latched):
@@ -322,4 +319,3 @@ async def test_a_stop_that_was_overheard_is_repeated() -> None:
                 channel.repeat_stop()
                 await asyncio.sleep(0.02)
         assert rig.controller.faults.active("ignore_stop") is None
-        channel.close()
