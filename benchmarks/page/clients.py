@@ -33,6 +33,7 @@ from benchmarks.page.verdicts import PROGRAMS, commanded
 from benchmarks.soak.cell import SoakedCell
 from cellctl.hmi.settings import load_settings
 from fakes.demo.page import write_settings
+from tests.rigs.kept import kept
 
 GRACE_S = 30.0
 
@@ -58,6 +59,8 @@ class Turn:
     part_s: tuple[float, ...]
     page_cpu: float
     """Share of one core."""
+    page_mib: float
+    """Resident memory at its end; NaN for a page that was killed."""
     late_ms: tuple[float, float]
     """Of the snapshots at the readers: p50, p99; NaN without readers."""
     tick_late_ms: tuple[float, float]
@@ -127,6 +130,7 @@ def turn(
         row = measure("guard", "idle", seconds, cell.own.folder)
         times_s = [_part_s(cell) for _ in range(parts)]
         cpu = (_cpu_s(cell.page.process.pid) - used_s) / (time.monotonic() - begun_s)
+        mib = math.nan if page is Page.KILLED else kept(cell.page.process.pid).memory_kb / 1024
     (all_of_them,) = heard
     if all_of_them.refused:
         raise RuntimeError(f"not every reader was let in: {all_of_them.refused}")
@@ -141,6 +145,7 @@ def turn(
         row.stalled,
         tuple(times_s),
         cpu,
+        mib,
         _middle_and_late_ms(all_of_them.late_s),
         _middle_and_late_ms(ticks.late_s),
         _middle_and_late_ms(verdicts.took_s),
@@ -195,6 +200,7 @@ def table(turns: list[Turn]) -> Table:
         row(f"snapshot at a reader, {name}", "ms", lambda one, i=i: one.late_ms[i])
         row(f"command to verdict, {name}", "ms", lambda one, i=i: one.verdict_ms[i])
     row("page, share of a core", "", lambda one: one.page_cpu)
+    row("page, resident", "MiB", lambda one: one.page_mib)
     return shown
 
 
