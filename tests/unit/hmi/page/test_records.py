@@ -9,7 +9,7 @@ from playwright.sync_api import expect
 
 from cellctl.api.local_socket.messages import StartCommand
 from cellctl.records.database.schema_version import FILE
-from tests.unit.hmi.page.screen import Screen
+from tests.unit.hmi.page.screen import SIZE, Screen
 from tests.unit.hmi.scripted_daemon import PaperDaemon, alarm, snapshot
 
 LINES = """(place) => {
@@ -161,6 +161,24 @@ def test_a_force_is_drawn_against_its_limit_on_either_side(
     pressed = {"axis": "Fz", "unit": "N", "value": -61.0, "limit": None}
     paper.snapshot = snapshot(forces=[force | {"wrench": [pressed]}])
     expect(screen.tab.locator("svg.curve line")).to_have_count(2)
+
+
+def test_that_an_arm_may_press_moves_no_button(screen: Screen, paper: PaperDaemon) -> None:
+    screen.sign_in()
+    (force,) = snapshot()["forces"]
+    run = {"number": 17, "serial": "SAT-0042-ABCDEFGHIJKLMNOP", "recipe": 1, "result": "aborted"}
+    told = {"state": "ABORTED", "state_requested": "ABORTED", "run": run | {"good_parts": 12345}}
+    for _language in ("en", "zh"):
+        paper.snapshot = snapshot(**told)
+        expect(screen.tab.locator("#state")).to_have_attribute("data-state", "ABORTED")
+        expect(screen.tab.locator(".pressing")).to_have_count(0)
+        before = screen.button("abort").bounding_box()
+        trip = {"presses_n": 101.1, "trip": "RAW_LIMIT Fz -101.1 N, limit 50.0 N"}
+        paper.snapshot = snapshot(**told, forces=[force | trip])
+        expect(screen.tab.locator(".pressing")).to_be_visible()
+        assert screen.button("abort").bounding_box() == before
+        assert before["y"] + before["height"] < SIZE["height"]
+        screen.tab.click("#language")
 
 
 def test_however_many_alarms_there_are_the_band_cuts_none_off_at_its_edge(
