@@ -33,10 +33,11 @@ would let any other program on the PC double the cycle time.
 PATIENCE_S = 120.0
 """Nothing that a run waits for takes more than a few seconds on a PC that does nothing else."""
 CHECK_S = 20.0
+"""Time in which a worker answers whether it is there: it may have to be started first."""
 SOLVE_S = 900.0
-"""For the long solves of calibrations."""
+"""Time for the long solves of calibrations."""
 JOIN_S = 1.0
-"""For a process that was killed to be gone."""
+"""Time in which a process that was killed is gone."""
 CLOSE_S = 5.0
 """Time that work which has begun gets at the end of the daemon."""
 

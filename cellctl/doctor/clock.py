@@ -9,6 +9,7 @@ _BUILT_S = 1_767_225_600
 """2026-01-01 00:00 UTC. No version of this software is older, so that a clock which shows an
 earlier time is wrong for certain, whatever it says of its synchronisation."""
 _RTC_OFF_S = 60.0
+"""Largest difference to the clock with the battery, from which the PC starts without a network."""
 
 
 def clock_findings(pc: Pc) -> Iterator[Finding]:

@@ -25,11 +25,14 @@ from cellctl.runtime.procedure import ProcedureContext, ProcedureOutcome
 from cellctl.workers import VisionWorkers
 
 HOLD_OUT_POSES = 4
+"""Poses that the fit does not use: the result is held against their readings."""
 STEADY_N, STEADY_N_M = 4.0, 1.5
 """Scatter of single samples at standstill, raw, above which hoses or arm still swing."""
 STEADY_TRIES = 5
+"""Readings at one pose until one is steady."""
 POLL_S = 0.02
 READ_TIMEOUT_S = 2.0
+"""Longest silence of the sensor beyond the end of a reading."""
 
 
 @dataclass(frozen=True, slots=True)

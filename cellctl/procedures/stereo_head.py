@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from cellctl.calibration.solvers.stereo.stereo_result import StereoResult
 
 WORKING_DISTANCE_M = 0.5
+"""Distance from the head to the point about which it swings, along the middle of both lines of
+sight: about that at which parts are measured."""
 
 
 async def calibrate_head(

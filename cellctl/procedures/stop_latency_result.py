@@ -11,6 +11,7 @@ from cellctl.force.contact.commissioning import LatencyEstimate, estimate_stop_l
 from cellctl.geometry.pose import MM, Array
 
 SIGMA_MS = 15.0
+"""Largest standard deviation of the latency."""
 UPPER_BOUND = "upper bound"
 """Name of the check that holds the result against what every recipe is safe with."""
 METHOD = "overrun against speed"

@@ -39,6 +39,7 @@ from cellctl.workers import VisionWorkers
 
 DISC_DIAMETER_M = 20 * MM
 PAIRS = 4
+"""Pairs of images whose measurements are averaged."""
 SEARCH_RADIUS_M = 35 * MM
 """Less than half the pitch of the discs."""
 

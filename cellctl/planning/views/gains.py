@@ -16,7 +16,9 @@ from cellctl.vision.camera.stereo_head import StereoHead
 from cellctl.vision.features.hole import Hole
 
 BASELINE_RATIO = 1.5
+"""The longer baseline whose gain is stated."""
 _WIDER = np.arange(1.1, 3.01, 0.1)
+"""Ratios of the distances between the holes of a head, which are tried one after the other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -11,9 +11,11 @@ from cellctl.geometry.pose import Array
 from cellctl.vision.camera.stereo_head import StereoHead
 
 _DISTANCES = 5
-_TILTS_RAD = np.radians([0.0, 10.0, 20.0, 30.0])
-_TILT_DIRECTIONS = 8
+"""Distances that are tried, evenly over what the head sees sharply."""
+_TILTS_RAD, _TILT_DIRECTIONS = np.radians([0.0, 10.0, 20.0, 30.0]), 8
+"""Angles between the line of sight and the normal of the parts, and the directions of each tilt."""
 _ROLLS = 12
+"""Turns of the baseline about the line of sight."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,6 +32,7 @@ _ALIKE = 1.01
 _APART_M, _APART_RAD = 0.05, float(np.radians(10.0))
 """Runners-up differ by more than this from the best and from each other."""
 _RUNNERS_UP = 3
+"""How many other pairs are shown besides the best."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

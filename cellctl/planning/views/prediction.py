@@ -26,6 +26,7 @@ from cellctl.vision.registration.rigid_fit import by_pose
 SOURCES = ("images", "holes off their drawing", "heads against each other", "sway")
 CALIBRATION = "calibration of the heads"
 _MORE = 1e-3
+"""Relative increase of one variance, by which its share in the whole is found."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -20,6 +20,7 @@ _LEAST_SINGULAR = 0.08
 """Least singular value of the Jacobian with turns over half a metre. At the wrist's and the elbow's
 singular poses it is 0; 0.08 means that the flange's 250 mm/s ask at most 180 °/s of a joint."""
 _LEVER_M = 0.5
+"""Lever by which turns count as lengths, so that all rows of the Jacobian have one unit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

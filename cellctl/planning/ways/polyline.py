@@ -16,6 +16,7 @@ from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.planning.scene.arm import PlannedArm
 
 _STEPS = WaySteps(way_m=0.005, turn_rad=math.radians(0.5), jump_rad=math.radians(20.0))
+"""Finer than the driver's own check of a straight way: nothing waits for the planning."""
 
 
 def joints_at(arm: PlannedArm, place: StatedPlace) -> Array:

@@ -14,6 +14,7 @@ from cellctl.planning.ways.free import WAY_RESERVE_M, is_free_with_reserve
 from cellctl.planning.ways.travel import travel_s
 
 _TRIES = 400
+"""Random changes of a way that are tried."""
 _FIRST_RAD = np.radians(40.0)
 _LAST_RAD = np.radians(1.0)
 """Standard deviation of a step of a joint, at the first and at the last try."""
@@ -22,6 +23,7 @@ _MERGED_SHARE = 0.3
 _WORTH_S = 0.02
 """A gain below that is not worth to sweep the way for it."""
 _LOOKS = 8
+"""Places of each stretch at which a change is looked at before the whole way is swept."""
 
 
 def quickened(around: Surroundings, way_rad: Array, rng: np.random.Generator) -> Array:

@@ -8,6 +8,7 @@ from cellctl.planning.ways.free import is_free_way, is_free_with_reserve
 from cellctl.planning.ways.travel import travel_s
 
 _SHORTCUTS = 40
+"""Random shortcuts that are tried."""
 
 
 def shortened(around: Surroundings, rough_rad: Array, rng: np.random.Generator) -> Array:
