@@ -58,7 +58,7 @@ class KeptZero:
     serial: str
     """Of the force sensor."""
     pressed: Pressed
-    sensor_z: tuple[float, float, float]
+    pull_axis: tuple[float, float, float]
     """Unit vector of z of the guard's frame, in the axes of the sensor."""
     sensor_n: tuple[float, float, float]
     """What the sensor read, in N, with nothing subtracted."""
@@ -72,7 +72,7 @@ class KeptZero:
         """Raises ``ValueError``, ``LookupError`` or ``TypeError`` for anything else."""
         taken = datetime.fromisoformat(content["taken"])
         pressed = Pressed(*(float(content["pressed"][key]) for key in ("inwards", "force_n")))
-        vectors = [_three(content[key]) for key in ("sensor_z", "sensor_n", "base_r_sensor")]
+        vectors = [_three(content[key]) for key in ("pull_axis", "sensor_n", "base_r_sensor")]
         if taken.tzinfo is None or abs(pressed.inwards) != 1.0 or not np.isfinite(pressed.force_n):
             raise ValueError("no zero of a part in its place")
         serial, held = str(content["serial"]), str(content["held"])
@@ -149,7 +149,7 @@ async def pressed_since(arm: GuardedRobot, kept: KeptZero) -> float | None:
     raw = await newest_raw(arm.guard)
     if raw is None or turned > _TURNED_RAD or arm.guard.health().sensor_serial != kept.serial:
         return None
-    change_n = float(np.dot(kept.sensor_z, raw[:3] - np.asarray(kept.sensor_n)))
+    change_n = float(np.dot(kept.pull_axis, raw[:3] - np.asarray(kept.sensor_n)))
     return kept.pressed.force_n - kept.pressed.inwards * change_n
 
 

@@ -16,4 +16,5 @@ def test_descendants_count(tmp_path: Path) -> None:
         until_blocking(lambda: processors_s(program) > 0.5, within_s=30.0, look_s=0.05)
     finally:
         program.kill()
-    assert processors_s(program) == 0.0
+    # A process that was killed is there until the kernel has taken it down.
+    until_blocking(lambda: processors_s(program) == 0.0, within_s=10.0)

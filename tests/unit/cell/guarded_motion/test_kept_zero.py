@@ -120,7 +120,7 @@ async def test_a_file_that_is_none_is_passed_over(bench: Bench, text: str) -> No
 
 @pytest.mark.parametrize(
     ("key", "value"),
-    [("sensor_n", [1.0, 2.0]), ("sensor_z", [1.0, "nan", 0.0]), ("taken", "2026-11-28T06:00:00")],
+    [("sensor_n", [1.0, 2.0]), ("pull_axis", [1.0, "nan", 0.0]), ("taken", "2026-11-28T06:00:00")],
 )
 async def test_no_part_of_it_is_guessed(bench: Bench, key: str, value: object) -> None:
     feel(bench, 0.0)

@@ -31,6 +31,7 @@ class Panel:
             plug = self.plugs[number]
             self.plugs[number] = replace(plug, base_T_flange=aside * plug.base_T_flange)
         self.notes = Notes()
+        self.looked_at_files = False
         self.names: list[str] = []
         self.told: list[str] = []
 
@@ -49,7 +50,11 @@ class Panel:
             )
 
         async def opened(*_of: object) -> int:
+            assert self.looked_at_files, "the record shows files that nobody has looked at"
             return 1
+
+        async def looked(_recipe: object) -> None:
+            self.looked_at_files = True
 
         async def in_worker(job: Any, *arguments: object) -> Any:
             return job(*arguments)
@@ -61,7 +66,9 @@ class Panel:
         settings = SimpleNamespace(taught_plugs=TAUGHT, checked_plugs=CHECKED)
         cell: Any = SimpleNamespace(settings=settings, workers=SimpleNamespace(run=in_worker))
         context: Any = SimpleNamespace(
-            record=SimpleNamespace(open=opened), safe_point=None, progress=self.progress
+            record=SimpleNamespace(open=opened, look_at_files=looked),
+            safe_point=None,
+            progress=self.progress,
         )
         services: Any = SimpleNamespace(calibrations=None, store=None)
         recipe: Any = SimpleNamespace(id=1)

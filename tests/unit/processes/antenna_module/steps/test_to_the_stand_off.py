@@ -158,7 +158,7 @@ async def test_the_zero_over_the_socket_outlives_the_daemon(bench: Bench, tmp_pa
     assert kept is not None
     assert (kept.serial, kept.pressed) == ("M4347K-7", Pressed(inwards=-1.0, force_n=0.0))
     base_T_sensor = bench.visited[-1] * arm.flange_T_sensor
-    outwards = base_T_sensor.rotation.apply(kept.sensor_z)
+    outwards = base_T_sensor.rotation.apply(kept.pull_axis)
     np.testing.assert_allclose(outwards, [0.0, 0.0, 1.0], atol=0.02)
 
 
