@@ -28,6 +28,10 @@ DEFAULT_RATE_WINDOW_S = 0.5
 """Time over which the sample rate is averaged. At 1 kHz it holds 500 samples, so a gap just short
 of the default ``stale_s``, which is no fault, changes the rate by only 2 %."""
 
+LONGEST_BRAKING_S = 4.0
+"""Time from the request of a stop until what the robot carries hangs still. A large arm brakes from
+1000 mm/s within two seconds, and its load swings on for as long."""
+
 
 @dataclass(frozen=True, slots=True)
 class CusumTouch(Cusum):
@@ -51,6 +55,10 @@ class GuardLimits:
     filtered: Six = UNLIMITED
     """The same after a first-order low-pass of ``filter_s``: noise averages out, so it can be
     tighter."""
+    braking: Six | None = None
+    """What ``raw`` and ``filtered`` may grow to while the robot brakes after a stop that the daemon
+    has asked for, for ``LONGEST_BRAKING_S``; None where they stay as they are. A controller brakes
+    harder than its moves accelerate, and the load that swings has touched nothing."""
     touch: CusumTouch | None = None
     filter_s: float = DEFAULT_FILTER_S
     stale_s: float = 0.01
@@ -72,7 +80,7 @@ class GuardLimits:
 
     def __post_init__(self) -> None:
         # Written so that NaN is refused as well: a limit of NaN would never be compared as passed.
-        thresholds = (*self.raw, *self.filtered)
+        thresholds = (*self.raw, *self.filtered, *(self.braking or ()))
         durations = (self.filter_s, self.stale_s, self.flange_age_s, self.rate_window_s)
         # A single sample is always equal to itself, so a count of one would trip at the first
         # sample.

@@ -85,6 +85,8 @@ def limits_from_json(message: Message) -> GuardLimits:
         fields["touch"] = CusumTouch(**fields["touch"])
     for name in ("raw", "filtered", "rate_hz"):
         fields[name] = tuple(fields[name])
+    if fields.get("braking") is not None:
+        fields["braking"] = tuple(fields["braking"])
     return GuardLimits(**fields)
 
 

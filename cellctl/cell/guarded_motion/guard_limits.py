@@ -51,10 +51,14 @@ def guard_limits(
     filtered: Six,
     sensing: Sensing,
     *,
+    braking: Six | None = None,
     touch: CusumTouch | None = None,
     filter_s: float = DEFAULT_FILTER_S,
 ) -> GuardLimits:
-    """What the guard watches when the filtered wrench may be as great as ``filtered``."""
+    """What the guard watches when the filtered wrench may be as great as ``filtered``.
+
+    ``braking`` is what it may be while the robot brakes after a stop that the daemon has asked for.
+    """
     fx, fy, fz, mx, my, mz = filtered
     return GuardLimits(
         raw=(
@@ -66,6 +70,7 @@ def guard_limits(
             mz + RAW_MARGIN_N_M,
         ),
         filtered=filtered,
+        braking=braking,
         touch=touch,
         filter_s=filter_s,
         stale_s=sensing.stale_s,

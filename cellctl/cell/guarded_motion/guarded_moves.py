@@ -61,6 +61,7 @@ async def guarded_moves(
     tolerance: WrenchTolerance,
     *,
     leaves: Pressed | None = None,
+    braking: WrenchTolerance | None = None,
 ) -> AsyncIterator[GuardedMove]:
     """Tare at standstill and arm the guard; yields a function that runs one guarded move.
 
@@ -71,7 +72,11 @@ async def guarded_moves(
     The zero of the tare holds whatever the sensor feels at the beginning: a weight that is not
     subtracted, so that a move that tilts it changes the force, and the force with which a part is
     pressed into the place that these moves take it out of. ``leaves`` says what is known of that
-    force, and is kept on the disk, so that a restart does not forget it. Raises ``NotSettled``,
+    force, and is kept on the disk, so that a restart does not forget it.
+
+    ``braking`` is for moves with nothing near: what the load may make of the robot's brakes when
+    somebody ends the move, which are harder than its acceleration. Nothing is lost by it, because
+    the stop that a trip would ask for was asked for already. Raises ``NotSettled``,
     ``GuardRefused`` and what the moves raise.
     """
     guard = arm.guard
@@ -94,7 +99,8 @@ async def guarded_moves(
         # Before anything pulls: the daemon may be killed while it does.
         await keep_zero(arm, sensor_T_wrench, leaves)
     with cell.trips_awaited(arm.sensor_name):
-        await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor)))
+        brakes = None if braking is None else braking.limits
+        await guard.arm(guard_limits(tolerance.limits, Sensing.of(arm.sensor), braking=brakes))
         # After a fault the guard stays armed or latched: whoever handles the fault decides when
         # watching may end.
         try:

@@ -6,9 +6,10 @@ Wherever a NaN could arrive, the comparison is written so that NaN counts as bey
 
 import math
 from collections import deque
+from dataclasses import replace
 
 from cellctl.force.contact.touch_detector import CusumDetector
-from cellctl.guard.limits import GuardLimits, Six
+from cellctl.guard.limits import LONGEST_BRAKING_S, GuardLimits, Six
 
 
 class ArmedDetectors:
@@ -19,12 +20,31 @@ class ArmedDetectors:
 
     def __init__(self, limits: GuardLimits, bad_frames: int, now_s: float) -> None:
         self.limits = limits
+        """Those that hold at present."""
+        self._moving, self._brakes_until_s = limits, now_s
         self.frozen = FrozenDetector(limits.frozen_samples)
         self.rate = RateDetector(limits.rate_hz, limits.rate_window_s, now_s)
         self.touch_axis = limits.touch.axis if limits.touch is not None else 0
         self._touch_sign = limits.touch.sign if limits.touch is not None else 1.0
         self._touch = CusumDetector(limits.touch) if limits.touch is not None else None
         self._bad_frames = BurstDetector(limits.bad_frames, limits.bad_frames_window_s, bad_frames)
+
+    def brake(self, now_s: float) -> None:
+        """Widen the limits of the wrench to those of braking, until ``end_of_braking``."""
+        braking = self._moving.braking
+        if braking is None:
+            return
+        self.limits = replace(
+            self._moving,
+            raw=_wider(self._moving.raw, braking),
+            filtered=_wider(self._moving.filtered, braking),
+        )
+        self._brakes_until_s = now_s + LONGEST_BRAKING_S
+
+    def end_of_braking(self, now_s: float) -> None:
+        """Go back to the limits of the move once braking has had its time."""
+        if self.limits is not self._moving and now_s > self._brakes_until_s:
+            self.limits = self._moving
 
     def touched(self, wrench: Six) -> bool:
         """True when this sample completes a touch."""
@@ -153,6 +173,11 @@ class RateDetector:
     def excuse(self, seconds: float) -> None:
         """The whole machine stood still for so long and nobody could count."""
         self._excused_s += seconds
+
+
+def _wider(limits: Six, others: Six) -> Six:
+    a, b, c, d, e, f = map(max, limits, others)
+    return a, b, c, d, e, f
 
 
 def beyond(wrench: Six, limits: Six) -> int | None:

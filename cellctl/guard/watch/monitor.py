@@ -118,6 +118,7 @@ class WrenchMonitor:
         armed = self._armed
         if armed is None or self.trip is not None:
             return
+        armed.end_of_braking(now_s)
         limits = armed.limits
         silent_s = now_s - self.sample_time_s - self._sample_excuse_s
         if not silent_s <= limits.stale_s:
@@ -189,6 +190,11 @@ class WrenchMonitor:
     def disarm(self) -> None:
         """Watch nothing. A latched trip stays latched."""
         self._armed = None
+
+    def brake(self, now_s: float) -> None:
+        """The daemon has asked for a stop: what the load makes of braking is no contact."""
+        if self._armed is not None:
+            self._armed.brake(now_s)
 
     def acknowledge(self) -> None:
         """Release the latch; the guard is disarmed after it.

@@ -37,7 +37,7 @@ class RequestHandler:
         self._actions: dict[str, Callable[[Message], None]] = {
             "arm": self._arm,
             "disarm": lambda _: self._monitor.disarm(),
-            "stop": lambda _: self._supervisor.stop(self._now_s),
+            "stop": lambda _: self._stop(),
             "acknowledge": lambda _: self._acknowledge(),
             "gravity_compensation": self._set_gravity_compensation,
             "wrench_frame": self._set_wrench_frame,
@@ -80,6 +80,10 @@ class RequestHandler:
         # The monitor does no I/O, so it is told what it judges by: the channel as it is now.
         self._monitor.channel_up = self._supervisor.up
         self._monitor.arm(limits_from_json(request["limits"]), self._health(), self._now_s)
+
+    def _stop(self) -> None:
+        self._supervisor.stop(self._now_s)
+        self._monitor.brake(self._now_s)
 
     def _acknowledge(self) -> None:
         self._monitor.acknowledge()

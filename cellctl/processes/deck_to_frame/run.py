@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial.transform import RigidTransform
 
 from cellctl import log
+from cellctl.cell.guarded_motion.free_moves import free_tolerance
 from cellctl.cell.guarded_motion.guarded_moves import WrenchTolerance, guarded_moves
 from cellctl.cell.guarded_motion.settling import settle
 from cellctl.cell.lighting.auto_exposure import RunExposures
@@ -208,7 +209,13 @@ class AssemblyRun:
             main.state().base_T_flange, base_T_flange, flange_T_deck, acceleration_m_s2
         )
         slowest_m_s2 = min(acceleration_m_s2, main.least_acceleration_m_s2())
-        async with guarded_moves(self.cell.cell, self.cell.arm, flange_T_deck, tolerance) as move:
+        # Somebody who ends this move has the controller brake harder than it accelerates, and that
+        # shall not be taken for a contact.
+        free = free_tolerance(self.cell.arm)
+        braking = WrenchTolerance(free.force_n, free.moment_n_m + free.force_n * LEVER_M)
+        async with guarded_moves(
+            self.cell.cell, self.cell.arm, flange_T_deck, tolerance, braking=braking
+        ) as move:
             await move(
                 main.move_linear(
                     base_T_flange,

@@ -1,4 +1,5 @@
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -27,6 +28,8 @@ def over_the_wire(message: dict[str, object]) -> dict[str, object]:
 def test_limits(touch: CusumTouch | None) -> None:
     limits = GuardLimits(raw=(math.inf, 1.0, 2.0, 3.0, 4.0, 5.0), touch=touch)
     assert limits_from_json(over_the_wire(limits_to_json(limits))) == limits
+    limits = replace(limits, braking=(9.0,) * 6)
+    assert limits_from_json(over_the_wire(limits_to_json(limits))) == limits
 
 
 @pytest.mark.parametrize("reason", TripReason)
@@ -46,7 +49,7 @@ def test_faults() -> None:
 
 @pytest.mark.parametrize(
     "change",
-    [{"raw": (0.0,) * 6}, {"stale_s": -1.0}, {"frozen_samples": 1}, {"raw": (math.nan,) * 6}],
+    [{"raw": (0.0,) * 6}, {"braking": (0.0,) * 6}, {"stale_s": -1.0}, {"frozen_samples": 1}, {"raw": (math.nan,) * 6}],
     ids=str,
 )
 def test_limits_that_could_not_trip_are_refused(change: dict[str, object]) -> None:

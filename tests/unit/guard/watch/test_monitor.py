@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from cellctl.errors.force import GuardRefused
-from cellctl.guard.limits import UNLIMITED, CusumTouch, GuardLimits, Six
+from cellctl.guard.limits import LONGEST_BRAKING_S, UNLIMITED, CusumTouch, GuardLimits, Six
 from cellctl.guard.report import TripReason
 from cellctl.guard.watch.monitor import MOST_EXCUSED_S, WrenchMonitor
 from cellctl.interfaces.ft_sensor import FtHealth
@@ -289,3 +289,34 @@ def test_a_flange_pose_turns_the_load() -> None:
     assert monitor.sample(sample(0.001, -100.0))[2] == pytest.approx(0.0)
     monitor.flange(flange(0.001, upside_down))
     assert monitor.sample(sample(0.002, 100.0))[2] == pytest.approx(0.0)
+
+
+BRAKING = replace(LIMITS, braking=(200.0, 200.0, 200.0, 20.0, 20.0, 20.0))
+
+
+def test_what_the_load_makes_of_the_brakes_is_no_contact() -> None:
+    monitor = armed(BRAKING)
+    monitor.brake(0.0)
+    assert feed(monitor, lambda _: 190.0) is None
+    assert feed(monitor, lambda _: 201.0, begin=1001) == 1
+    assert reason(monitor) is TripReason.RAW_LIMIT
+
+
+def test_without_a_stop_that_was_asked_for_the_limits_are_those_of_the_move() -> None:
+    assert feed(armed(BRAKING), lambda _: 51.0) == 1
+
+
+def test_braking_makes_no_limit_tighter() -> None:
+    monitor = armed(BRAKING)
+    monitor.brake(0.0)
+    for k in range(1, 100):
+        monitor.sample(sample(k * 1e-3, mx=34.0))
+    assert monitor.trip is None
+
+
+def test_braking_ends_and_the_limits_of_the_move_hold_again() -> None:
+    monitor = armed(BRAKING)
+    monitor.brake(0.0)
+    end = round(LONGEST_BRAKING_S * 1e3)
+    assert feed(monitor, lambda _: 0.0, most=end + 2) is None
+    assert feed(monitor, lambda _: 51.0, begin=end + 3) == 1

@@ -53,6 +53,19 @@ def test_a_stop_leaves_the_limits_watched() -> None:
     monitor.arm(GuardLimits(raw=(20.0,) * 6), HEALTHY, monitor.sample_time_s)
     handler.answer({"id": 1, "do": "stop"}, 0.0)
     assert monitor.armed
+    monitor.sample(sample(0.001, 25.0))
+    assert monitor.trip is not None
+
+
+def test_a_stop_lets_the_load_swing_where_the_limits_say_so() -> None:
+    monitor = ready_monitor()
+    handler = RequestHandler(monitor, opened(Channel()), lambda: HEALTHY)
+    monitor.channel_up = True
+    limits = GuardLimits(raw=(20.0,) * 6, braking=(40.0,) * 6)
+    monitor.arm(limits, HEALTHY, monitor.sample_time_s)
+    handler.answer({"id": 1, "do": "stop"}, 0.0)
+    monitor.sample(sample(0.001, 25.0))
+    assert monitor.trip is None
 
 
 def handler_of(monitor: WrenchMonitor, channel: Channel | None = None) -> RequestHandler:
