@@ -16,6 +16,7 @@ from cellctl.api.local_socket.report import (
 from cellctl.cli.operator.no_end import without_end
 from cellctl.errors import CellError
 from cellctl.errors.force import GuardDied, GuardRefused
+from cellctl.records.entries import RunResult
 from cellctl.records.outcome import outcome
 
 _COLOURS = {
@@ -37,6 +38,10 @@ NO_SAFE_POINT = (
     "no safe point is left before the end of the run, unless this step has to be tried again; "
     "`cellctl stop` ends it at once"
 )
+_NEXT_WITHOUT_PART = (
+    "this run joined no good part. What hangs free: leave its gripper closed. What stands in its "
+    "place: do with it as its process says. Then `cellctl reset`"
+)
 _NEXT_AFTER_PROCEDURE = (
     "do what the guide of the procedure asks for at its end, and see that nothing hangs in an "
     "open gripper; then `cellctl reset`"
@@ -46,6 +51,7 @@ _NEXT_IN_IDLE = {
     "MAINTENANCE": "`cellctl procedure NUMBER`; before a part `cellctl mode production`",
     "MANUAL": "`cellctl mode production` or `maintenance`: in Manual nothing is started",
 }
+GOOD = RunResult.GOOD.value
 _NO_RUN = frozenset({"IDLE", "STOPPED", "ABORTED", "COMPLETED", "RESETTING", "CLEARING"})
 """States in which what was measured is of a run that has ended."""
 _GUARDED = "force_sensors."
@@ -164,6 +170,9 @@ def _next(report: StatusReport) -> str:
     if (report.state, report.mode) == ("COMPLETED", "MAINTENANCE"):
         # Nothing was joined: whoever opened the gripper now might drop the part that was weighed.
         return _NEXT_AFTER_PROCEDURE
+    if report.state == "COMPLETED" and (report.last_run is None or report.last_run.result != GOOD):
+        # After a dry run, or a run that Complete has ended, the part hangs free over its place.
+        return _NEXT_WITHOUT_PART
     hold = "`cellctl hold` pauses at the next safe point"
     if not report.safe_point_ahead:
         hold = f"a Hold would come too late: {NO_SAFE_POINT}"

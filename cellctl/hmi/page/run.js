@@ -100,6 +100,8 @@ function next(s) {
   const begun = { PRODUCTION: "start", MAINTENANCE: "procedure" }[s.mode];
   const refusal = s.state === "IDLE" ? s.permitted?.[begun] : null;
   if (refusal?.code) return t("next_refused", given(`reject_${refusal.code}`, refusal.reason));
+  // After a dry run, or a run that Complete has ended, the part hangs free over its place.
+  if (s.state === "COMPLETED" && s.mode !== "MAINTENANCE" && s.run.result !== "good") return t("next_without_part");
   return given(`next_${s.state}_${s.mode}`, t(`next_${s.state}`));
 }
 

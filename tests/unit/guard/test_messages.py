@@ -49,7 +49,13 @@ def test_faults() -> None:
 
 @pytest.mark.parametrize(
     "change",
-    [{"raw": (0.0,) * 6}, {"braking": (0.0,) * 6}, {"stale_s": -1.0}, {"frozen_samples": 1}, {"raw": (math.nan,) * 6}],
+    [
+        {"raw": (0.0,) * 6},
+        {"braking": (0.0,) * 6},
+        {"stale_s": -1.0},
+        {"frozen_samples": 1},
+        {"raw": (math.nan,) * 6},
+    ],
     ids=str,
 )
 def test_limits_that_could_not_trip_are_refused(change: dict[str, object]) -> None:

@@ -9,7 +9,11 @@ from cellctl.records.entered.said_by import was_obeyed
 from cellctl.records.entries import Alarm, AuditEntry, RunRecord, RunResult
 from cellctl.records.report.text import MISSING, when
 
-_BY_COMMAND = {RunResult.STOPPED: "stop", RunResult.ABORTED: "abort"}
+_BY_COMMAND = {
+    RunResult.STOPPED: "stop",
+    RunResult.ABORTED: "abort",
+    RunResult.BAD: "complete",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,6 +44,9 @@ def fault_box(record: RunRecord, audit: Sequence[AuditEntry]) -> FaultBox | None
         return None
     obeyed = (one for one in reversed(audit) if one.action == command and was_obeyed(one))
     given = next(obeyed, None)
+    if given is None and head.result == RunResult.BAD:
+        # It came to its own end, and its part is bad by what was measured.
+        return None
     who = "it is not recorded by whom" if given is None else f"by {given.actor}, {when(given.time)}"
     return FaultBox(f"Ended by the command {command}, {who}", _last_step(record), MISSING, MISSING)
 

@@ -11,7 +11,7 @@ from cellctl.api.local_socket.report import (
     RunReport,
     StatusReport,
 )
-from cellctl.cli.operator.status_screen import _force, _measured, _rows
+from cellctl.cli.operator.status_screen import _force, _measured, _next, _rows
 from cellctl.clock import utc_now
 from tests.unit.cli.agreeable import AT_REST
 
@@ -70,3 +70,23 @@ def test_a_guard_is_good_only_while_nothing_is_wrong_with_it(
 ) -> None:
     rows = dict(_rows(StatusReport(**AT_REST | shows)))
     assert str(rows["guard"]) == said
+
+
+@pytest.mark.parametrize(
+    ("mode", "result", "said"),
+    [
+        ("production", "good", "fasten a joined part"),
+        # A dry run is recorded as bad, and so is a run that Complete has ended before its end.
+        ("dry_run", "bad", "What hangs free: leave its gripper closed"),
+        ("production", "bad", "What hangs free: leave its gripper closed"),
+    ],
+)
+def test_a_gripper_is_opened_only_after_a_part_was_joined(
+    mode: str, result: str, said: str
+) -> None:
+    ended = RunReport(
+        number=3, serial="D-2", recipe="deck", mode=mode, started=utc_now(), result=result
+    )
+    report = StatusReport(**AT_REST | {"state": "COMPLETED", "last_run": ended})
+    report = report.model_copy(update={"state_requested": "COMPLETED"})
+    assert said in _next(report)

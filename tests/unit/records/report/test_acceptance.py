@@ -191,6 +191,20 @@ def test_a_run_that_somebody_ended_names_him(store: RunStore, tmp_path: Path) ->
     assert "terminal:lin" in page, "who started it"
 
 
+def test_a_run_that_complete_ended_says_so_and_one_that_came_to_its_end_does_not(
+    store: RunStore, tmp_path: Path
+) -> None:
+    run = start(store)
+    store.audit("line", "complete", {"refused": "not in this state"})
+    store.close_run(run, RunResult.BAD)
+    assert "Ended by the command" not in text_of(export_run(store, run, tmp_path))
+    run = start(store)
+    store.audit("line", "complete", {})
+    store.close_run(run, RunResult.BAD)
+    page = text_of(export_run(store, run, tmp_path))
+    assert re.search(r"Ended by the command complete, by line, \d{4}-", page)
+
+
 def test_the_timeline_has_only_what_belongs_to_the_run(store: RunStore) -> None:
     store.audit("line", "start", {"serial": "earlier"})
     store.audit("line", "reset", {})
