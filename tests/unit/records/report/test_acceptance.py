@@ -197,11 +197,11 @@ def test_a_run_that_complete_ended_says_so_and_one_that_came_to_its_end_does_not
     run = start(store)
     store.audit("line", "complete", {"refused": "not in this state"})
     store.close_run(run, RunResult.BAD)
-    assert "Ended by the command" not in text_of(export_run(store, run, tmp_path))
+    assert "Ended by the command" not in text_of(export_run(store, run, tmp_path / "own end"))
     run = start(store)
     store.audit("line", "complete", {})
     store.close_run(run, RunResult.BAD)
-    page = text_of(export_run(store, run, tmp_path))
+    page = text_of(export_run(store, run, tmp_path / "completed"))
     assert re.search(r"Ended by the command complete, by line, \d{4}-", page)
 
 
