@@ -66,11 +66,11 @@ campaign-faults: venv
 
 # Takes an hour and more; interrupted, it goes on where it was.
 campaign-tornado: venv
-	$(BIN)/python -m benchmarks.tornado
+	$(BIN)/python -m benchmarks.tornado --page docs/imperfections.md
 
 # Takes an hour and more; interrupted, it goes on where it was.
 campaign-decks: venv
-	$(BIN)/python -m benchmarks.decks.campaign
+	$(BIN)/python -m benchmarks.decks.campaign --page docs/decks.md
 
 # Takes half an hour; QUICK=1 draws few cells and insertions, in a few minutes each.
 campaign-antenna: venv

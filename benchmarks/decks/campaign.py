@@ -19,24 +19,26 @@ from rich.console import Console
 
 from benchmarks.decks.chain import Figures, Outcome, Shipped, run_chain
 from benchmarks.decks.deck_range import DECKS, LARGE_LEGS_MM, SHIPPED_LEGS_MM, Deck, refusals
-from benchmarks.decks.table import markdown
+from benchmarks.decks.table import HEAD, markdown
 
 INTERRUPTED = 130
 
 
 def campaign(
     n: Annotated[int, typer.Option("-n", min=1, help="Seeds of every deck.")] = 3,
-    out: Annotated[Path, typer.Option(help="Folder for figures and table.")] = Path("runs/decks"),
+    page: Annotated[
+        Path, typer.Option(help="Where the table goes as Markdown; its figures beside it.")
+    ] = Path("runs/decks.md"),
     workers: Annotated[int, typer.Option(min=1, help="Processes.")] = 2,
     only: Annotated[
         list[str] | None,
         typer.Option(help="Decks, as 10kg-1x1m-150mm, with * as in file names; may repeat."),
     ] = None,
 ) -> None:
-    """Assemble every deck of the range; what was run before in the same folder is not run again."""
+    """Assemble every deck of the range; whose figures lie beside the page is not run again."""
     console = Console(highlight=False, soft_wrap=True)
-    out.mkdir(parents=True, exist_ok=True)
-    file = out / "decks.json"
+    page.parent.mkdir(parents=True, exist_ok=True)
+    file = page.with_suffix(".json")
     rows: dict[str, dict[str, Any]] = (
         json.loads(file.read_text(encoding="utf-8")) if file.exists() else {}
     )
@@ -63,7 +65,7 @@ def campaign(
     shipped = Shipped.read()
     refused = {deck.key: refusals(deck, shipped.setting) for deck in decks}
     text = markdown(decks, [Figures(**row) for row in rows.values()], refused)
-    (out / "decks.md").write_text(text, encoding="utf-8")
+    page.write_text(HEAD + text, encoding="utf-8")
     console.print(text)
     false = any(row["outcome"] == Outcome.FALSE for row in rows.values())
     raise typer.Exit(code or int(false))

@@ -5,7 +5,7 @@ deck where the loop has left it, and with the pose and the uncertainty that the 
 """
 
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import StrEnum
 from typing import Any, Self
 
@@ -27,6 +27,7 @@ from cellctl.processes.deck_to_frame.mating.settings import MatingSettings
 from cellctl.processes.deck_to_frame.poses.part_measurer import deck_in_frame
 from cellctl.processes.deck_to_frame.poses.seat_error import seat_error
 from cellctl.processes.deck_to_frame.steps.verify import unproven_seat
+from cellctl.version import software as software_name
 from fakes.demo.processes.deck_to_frame import LIMITED
 from fakes.scenes.deck_on_frame.scenario import DeckScenario
 from tests.rigs.mating.cell import MatingCell
@@ -61,6 +62,8 @@ class Figures:
     gap_mm: float | None = None
     peak_n: float | None = None
     held_n: float | None = None
+    software: str = field(default_factory=software_name)
+    """What was tried, with its revision."""
 
     @property
     def beyond(self) -> bool:

@@ -8,13 +8,13 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from benchmarks.tornado.cases import ALL, Case, cases
+from benchmarks.tornado.cases import ALL, SCALES, Case, cases
 from benchmarks.tornado.chart import draw
 from benchmarks.tornado.costs import costs
 from benchmarks.tornado.ledger import Ledger
 from benchmarks.tornado.mating_alone import run_mating
 from benchmarks.tornado.outcome import Outcome, Verdict
-from benchmarks.tornado.table import markdown
+from benchmarks.tornado.table import document, markdown
 from benchmarks.tornado.whole_cell import NoResult, run_cell
 from fakes.imperfections import CATALOGUE
 
@@ -29,27 +29,30 @@ def tornado(
     only: Annotated[
         list[str] | None, typer.Option(help="This imperfection, or `all`; more than once.")
     ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for runs, table and chart.")] = Path(
-        "runs/tornado"
-    ),
+    out: Annotated[Path, typer.Option(help="Folder of the runs.")] = Path("runs/tornado"),
+    page: Annotated[
+        Path | None,
+        typer.Option(help="Where the table goes as Markdown; its figures and chart beside it."),
+    ] = None,
 ) -> None:
     """Try every imperfection; exit code 1 when the cell called a part good that is not.
 
-    What was run before in the same folder is not run again, and Ctrl-C keeps what is there.
+    Cases whose figures lie beside the page are not run again, and Ctrl-C keeps what is there.
     """
     if unknown := [name for name in only or () if name not in {*CATALOGUE, ALL}]:
         raise typer.BadParameter(f"no such imperfection: {', '.join(unknown)}")
     console = Console(highlight=False)
     out.mkdir(parents=True, exist_ok=True)
-    ledger = Ledger(out / "tornado.json")
-    wanted = list(cases(scale or (1.0, 2.0, 5.0), range(1, seeds + 1), only or ()))
+    page = page or out / "tornado.md"
+    ledger = Ledger(page.with_suffix(".json"))
+    wanted = list(cases(scale or SCALES, range(1, seeds + 1), only or ()))
     code = 0
     try:
         _run_all([case for case in wanted if not ledger.has(case)], ledger, out, console)
     except KeyboardInterrupt:
         console.print("interrupted; the same command goes on from here", style="bold")
         code = INTERRUPTED
-    _report(ledger, out, console)
+    _report(ledger, page, console)
     false = [one for one in ledger.outcomes if one.verdict is Verdict.NOT_NOTICED]
     for one in false:
         console.print(f"NOT NOTICED: {one.case.key}: {one.text}", style="bold red")
@@ -77,16 +80,17 @@ def _run(case: Case, out: Path) -> Outcome:
     return run_mating(case) if case.place == "mating" else run_cell(case, out / case.key)
 
 
-def _report(ledger: Ledger, out: Path, console: Console) -> None:
+def _report(ledger: Ledger, page: Path, console: Console) -> None:
     found = costs(ledger.outcomes)
     if not found:
         console.print("nothing to compare yet")
         return
-    table = markdown(found)
-    (out / "tornado.md").write_text(table, encoding="utf-8")
-    draw(found, out / "tornado.png")
-    console.print(table, soft_wrap=True)
-    console.print(f"figures, table and chart in {out}/tornado.json, .md and .png")
+    chart = page.parent / "pictures" / "tornado.png"
+    chart.parent.mkdir(exist_ok=True)
+    draw(found, chart)
+    page.write_text(document(found, ledger.outcomes, chart.relative_to(page.parent)), "utf-8")
+    console.print(markdown(found), soft_wrap=True)
+    console.print(f"table in {page}, figures beside it, chart in {chart}")
 
 
 if __name__ == "__main__":

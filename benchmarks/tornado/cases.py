@@ -15,6 +15,8 @@ MATING_ONLY = frozenset(
     }
 )  # fmt: skip
 """Nothing of them reaches a picture."""
+SCALES = (1.0, 2.0, 5.0)
+"""Times the realistic size of each."""
 Place = Literal["cell", "mating"]
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from benchmarks.tornado.cases import Case
 from benchmarks.tornado.outcome import Outcome, Verdict
+from cellctl.version import software
 from fakes.demo.processes.deck_to_frame import LIMITED, rotations
 from tests.rigs.mating.cell import MatingCell
 from tests.rigs.mating.trial import Trial, run_trial
@@ -50,4 +51,5 @@ def run_mating(case: Case) -> Outcome:
         final_n=figures["final_true_n"],
         iterations=None,
         wall_s=time.monotonic() - begun,
+        software=software(),
     )

@@ -35,6 +35,8 @@ class Outcome:
     iterations: int | None
     """Looks of the measuring loop; None where it did not run."""
     wall_s: float
+    software: str
+    """What was tried, with its revision."""
 
     @property
     def seated(self) -> bool:

@@ -10,6 +10,7 @@ from typing import Any
 
 from benchmarks.tornado.cases import Case
 from benchmarks.tornado.outcome import Outcome, Verdict
+from cellctl.version import software
 
 _END_S = 90.0
 """Time for the demonstration to stop its robots and to close its run."""
@@ -43,6 +44,7 @@ def run_cell(case: Case, folder: Path) -> Outcome:
         final_n=result["final_true_n"],
         iterations=result["iterations"],
         wall_s=time.monotonic() - begun,
+        software=software(),
     )
 
 

@@ -9,7 +9,7 @@ from benchmarks.tornado.chart import draw
 from benchmarks.tornado.costs import costs
 from benchmarks.tornado.ledger import Ledger
 from benchmarks.tornado.outcome import Outcome, Verdict
-from benchmarks.tornado.table import markdown
+from benchmarks.tornado.table import document, markdown
 from fakes.imperfections import CATALOGUE, check_scales
 
 GRIP = Case("grip_slip", 5.0, "cell", 1)
@@ -21,7 +21,9 @@ def outcome(case: Case, verdict: Verdict = Verdict.GOOD, **figures: float | None
         "final_n": 17.0,
     }  # fmt: skip
     text = "" if verdict is Verdict.GOOD else "F523"
-    return Outcome(case, verdict, text, **(seen | figures), iterations=2, wall_s=60.0)
+    return Outcome(
+        case, verdict, text, **(seen | figures), iterations=2, wall_s=60.0, software="cellctl 1"
+    )
 
 
 def test_every_imperfection_is_tried_at_every_size_beside_a_reference() -> None:
@@ -98,3 +100,18 @@ def test_a_part_that_was_never_seated_costs_no_offset(tmp_path: Path) -> None:
     assert lines[3].endswith("| 2 | 0 | 1 | 0 |")
     draw(found, tmp_path / "tornado.png")
     assert (tmp_path / "tornado.png").stat().st_size > 10_000
+
+
+def test_the_page_says_how_much_was_tried_and_why_parts_were_not_good() -> None:
+    seen = [
+        outcome(Case(NONE, 0.0, "cell", 1)),
+        outcome(GRIP, Verdict.NOTICED),
+        outcome(Case("glare", 2.0, "cell", 1)),
+    ]
+    page = document(costs(seen), seen, Path("pictures/tornado.png"))
+    tried = len(list(cases((1.0, 2.0, 5.0), (1,))))
+    assert f"\n3 of {tried} cases are tried; in none of them a part was called good" in page
+    assert "](pictures/tornado.png)" in page
+    assert "\n- grip_slip, 5 ×: F523\n" in page
+    seen.append(outcome(Case("glare", 5.0, "cell", 1), Verdict.NOT_NOTICED))
+    assert "in 1 of them a part" in document(costs(seen), seen, Path("tornado.png"))

@@ -12,7 +12,7 @@ DECK = "10kg-1x1m-150mm"
 
 @pytest.mark.figures
 def test_a_deck_is_measured_and_mated_in_a_process_of_its_own(tmp_path: Path) -> None:
-    options = ("-n", "1", "--workers", "1", "--only", DECK, "--out", str(tmp_path))
+    options = ("-n", "1", "--workers", "1", "--only", DECK, "--page", str(tmp_path / "decks.md"))
     done = subprocess.run(
         [sys.executable, "-m", "benchmarks.decks.campaign", *options],
         capture_output=True,
