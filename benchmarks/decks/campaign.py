@@ -19,7 +19,7 @@ from rich.console import Console
 
 from benchmarks.decks.chain import Figures, Outcome, Shipped, run_chain
 from benchmarks.decks.deck_range import DECKS, LARGE_LEGS_MM, SHIPPED_LEGS_MM, Deck, refusals
-from benchmarks.decks.table import HEAD, markdown
+from benchmarks.decks.table import document, markdown
 
 INTERRUPTED = 130
 
@@ -64,9 +64,9 @@ def campaign(
         pool.shutdown(cancel_futures=True)
     shipped = Shipped.read()
     refused = {deck.key: refusals(deck, shipped.setting) for deck in decks}
-    text = markdown(decks, [Figures(**row) for row in rows.values()], refused)
-    page.write_text(HEAD + text, encoding="utf-8")
-    console.print(text)
+    results = [Figures.of(row) for row in rows.values()]
+    page.write_text(document(decks, results, refused), encoding="utf-8")
+    console.print(markdown(decks, results, refused))
     false = any(row["outcome"] == Outcome.FALSE for row in rows.values())
     raise typer.Exit(code or int(false))
 

@@ -79,6 +79,11 @@ class Figures:
         """Plain data."""
         return asdict(self)
 
+    @classmethod
+    def of(cls, row: dict[str, Any]) -> Self:
+        """The figures of a row that was read from a file."""
+        return cls(**{**row, "outcome": Outcome(row["outcome"])})
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Shipped:

@@ -1,11 +1,13 @@
 """Every deck of the range has its holes before the heads, a sensor for its weight, and a recipe."""
 
+import json
+
 import numpy as np
 import pytest
 
 from benchmarks.decks.chain import Figures, Outcome, Shipped
 from benchmarks.decks.deck_range import DECKS, Deck, recipe_of, refusals, scenario_of, setting_of
-from benchmarks.decks.table import markdown
+from benchmarks.decks.table import document, markdown
 from cellctl.geometry.pose import MM
 from fakes.world.frames import from_written
 
@@ -82,7 +84,11 @@ def test_the_table_shows_the_worst_seed_and_every_reason() -> None:
         Figures(DRAWN.key, 2, Outcome.REFUSED, "F528 too wide", looks=1),
         Figures(DRAWN.key, 3, Outcome.FALSE, looks=1, lateral_mm=0.25, peak_n=39.0),
     ]
-    text = markdown([DRAWN, LONGEST], results, {DRAWN.key: ["no"], LONGEST.key: []})
+    # A campaign that goes on has them from its file.
+    results = [Figures.of(json.loads(json.dumps(one.row()))) for one in results]
+    decks, refused = [DRAWN, LONGEST], {DRAWN.key: ["no"], LONGEST.key: []}
+    text = markdown(decks, results, refused)
+    assert document(decks, results, refused).endswith("1 of 2 decks are tried.\n\n" + text)
     row = text.splitlines()[2]
     assert "| 1 of 3 | 2 |" in row
     assert "| 0.250 |" in row
