@@ -49,6 +49,7 @@ from cellctl.records.seals import Seal
 from cellctl.records.trend import Sample
 
 T = TypeVar("T")
+_FINISHED = (RunResult.GOOD, RunResult.BAD)
 
 
 def calibrations(session: Session, kind: str = "", limit: int | None = None) -> list[Calibration]:
@@ -165,6 +166,9 @@ def figure_history(
 ) -> tuple[list[Sample], str]:
     """The newest known value of each finished run of Production, the oldest first, and the unit.
 
+    Finished are runs that came to their end, good or bad. The peak of a contact that was cut off
+    says nothing of a process.
+
     Runs of schema 1 have none: their figures stand in other tables.
     """
     # A further attempt of a run replaces what an earlier one has found: the last row counts.
@@ -176,7 +180,7 @@ def figure_history(
     query = (
         select(RunRow, FigureRow)
         .join(FigureRow, FigureRow.run == RunRow.number)
-        .where(FigureRow.id.in_(last), RunRow.ended.is_not(None))
+        .where(FigureRow.id.in_(last), RunRow.result.in_(_FINISHED))
         .where(RunRow.mode == PRODUCTION)
         .order_by(RunRow.number.desc())
         .limit(limit)

@@ -12,7 +12,7 @@ from scipy.spatial.transform import RigidTransform
 
 from cellctl.clock import utc_at
 from cellctl.errors import CellError
-from cellctl.force.contact.curve import ForceCurve
+from cellctl.force.contact.curve import ForceCurve, curve_statistics
 from cellctl.geometry.pose import Array, pose_to_xyzabc
 from cellctl.geometry.uncertain import UncertainPose
 from cellctl.interfaces.stereo_camera import Image
@@ -53,6 +53,7 @@ from cellctl.processes.deck_to_frame.record.keys import (
     PEAK_FORCE,
 )
 from cellctl.processes.deck_to_frame.record.mating_record import (
+    peaks_record,
     plan_record,
     result_limits,
     result_record,
@@ -229,6 +230,11 @@ class DeckRecorder:
 
     async def peak_of_a_cut_contact(self, limit_n: float) -> None:
         """How hard a contact has pressed that came to no result, which would say it."""
+        curve = self.curves[-1] if self.curves else None
+        if curve is not None and len(curve.wrench) > 1 and self._settings is not None:
+            peaks = peaks_record(curve_statistics(curve.time_s, curve.wrench))
+            await self._document(peaks, result_limits(self._settings))
+        # Of all attempts, in place of that of the last one alone.
         if math.isfinite(peak_n := self.force_peaks()[2]):
             await self.recorder.add(figure(PEAK_FORCE, peak_n, "N", limit=Limit(upper=limit_n)))
 

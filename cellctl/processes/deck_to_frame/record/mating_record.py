@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from cellctl.force.contact.curve import CurveStatistics
 from cellctl.geometry.pose import MM, Array
 from cellctl.processes.deck_to_frame.mating.limits import contact_limits
 from cellctl.processes.deck_to_frame.mating.plan import MatingPlan
@@ -58,12 +59,19 @@ def result_record(result: MatingResult) -> dict[str, Any]:
         "released_force_n": result.released.force_n if result.released else None,
         "tare_mean": _force_and_moment(result.tare.mean),
         "tare_sigma": _force_and_moment(result.tare.sigma),
+        **peaks_record(statistics),
+        "duration_s": result.duration_s,
+        **_compliance_record(result),
+    }
+
+
+def peaks_record(statistics: CurveStatistics) -> dict[str, float]:
+    """How hard a contact has pressed, also one that was cut off."""
+    return {
         "peak_force_n": statistics.peak_fz_n,
         "peak_filtered_force_n": statistics.peak_filtered_fz_n,
         "peak_lateral_n": statistics.peak_lateral_n,
         "peak_moment_n_m": statistics.peak_moment_n_m,
-        "duration_s": result.duration_s,
-        **_compliance_record(result),
     }
 
 

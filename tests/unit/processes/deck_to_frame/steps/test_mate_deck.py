@@ -29,6 +29,9 @@ Plan = Callable[[int], Awaitable[MatingPlan]]
 Report = Callable[[MatingProgress], None]
 
 
+PEAKS = ("peak_force", "peak_filtered_force", "peak_lateral", "peak_moment")
+
+
 class Mating:
     """Stands in for the contact: plans, tells, and ends as the test wants."""
 
@@ -124,6 +127,9 @@ async def test_the_curve_of_a_failure_is_kept(
     assert any(a.name == "force-1.mcap" for a in record.artefacts)
     assert record.value("approach.speed") is not None
     assert "outcome" not in record.document("mating")
+    # Whoever decides about the part needs to know how hard it was pressed, in every direction.
+    peaks = {key: record.newest_figures[key] for key in PEAKS}
+    assert all(one.verdict is Verdict.PASS and one.value is not None for one in peaks.values())
 
 
 async def test_a_disk_that_fails_does_not_hide_the_fault(
