@@ -555,7 +555,8 @@ def test_the_screen_calls_an_awaited_touch_no_stop_request() -> None:
             "wait; the Hold comes too late",
         ),
         ({"state": "HELD"}, "`cellctl unhold`"),
-        ({"state": "COMPLETED"}, "open the gripper; then `cellctl reset`"),
+        # Of a run that joined a good part, `test_status_screen` tells the opposite.
+        ({"state": "COMPLETED"}, "leave its gripper closed"),
         ({"state": "COMPLETED", "mode": "MAINTENANCE"}, "the guide of the procedure"),
         ({"state": "CLEARING", "state_requested": "STOPPED"}, "wait"),
     ],
