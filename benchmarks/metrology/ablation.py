@@ -27,6 +27,7 @@ from rich.table import Table
 
 from benchmarks.metrology.accuracy import MACHINED_GREY
 from benchmarks.metrology.deck_over_frame import STEP_GREY, looks_of
+from benchmarks.metrology.drawn_hard import HARD
 from benchmarks.metrology.drawn_scenes import Scene, drawn_scene
 from benchmarks.metrology.fake_station import SCENARIO
 from benchmarks.metrology.figures import HoleErrors
@@ -56,6 +57,7 @@ HANGING = "deck over frame"
 WALLS = ("lit wall", "bright wall", "fading wall", "faint wall")
 CONES = ("flat cone", "bright cone", "near cone", "narrow cone", "true cone")
 THREADS = ("turns", "chamfered turns", "frame")
+DENTED = ("dented", "dented in a tenth", "worn all round")
 RINGS = ("broken edge", "narrow cone", *THREADS)
 EVERYTHING = ("disc", *WALLS, *CONES, "deck", *RINGS)
 
@@ -70,7 +72,7 @@ class Term:
 
     name: str
     images: tuple[str, ...]
-    """Looks, the parts ``deck`` and ``frame``, and the deck over the frame."""
+    """Looks, hard conditions, the parts ``deck`` and ``frame``, and the deck over the frame."""
     without: tuple[Replacement, ...]
 
 
@@ -136,11 +138,7 @@ TERMS = (
         ((selection, "_of_uneven_inside", lambda _, walled: walled),),
     ),
     Term("half level of a bent edge", ("disc", *WALLS), ((shape, "_bend_px", always(0.0)),)),
-    Term(
-        "movement and focus of the image",
-        EVERYTHING,
-        ((pair_measure, "_SPREAD_ROUNDS", 0),),
-    ),
+    Term("movement and focus of the image", EVERYTHING, ((pair_measure, "_SPREAD_ROUNDS", 0),)),
     Term(
         "cone: radial slope",
         (*CONES, "deck"),
@@ -156,11 +154,7 @@ TERMS = (
         CONES,
         ((fit_input, "clearance_px", always(np.full(1, np.inf))),),
     ),
-    Term(
-        "cone: second edge when narrow",
-        CONES,
-        ((Countersink, "second_edge", always(None)),),
-    ),
+    Term("cone: second edge when narrow", CONES, ((Countersink, "second_edge", always(None)),)),
     Term(
         "bore: broken edge", ("disc", *WALLS, "broken edge"), ((Pin, "second_edge", always(None)),)
     ),
@@ -206,6 +200,14 @@ TERMS = (
         (less("_inside", slice(14, 19), only_if=lambda model: model.uneven_grey > 0.0),),
     ),
     Term("outliers weigh less", ("lit wall", "turns", "deck"), ((noise, "_HUBER", 1e9),)),
+    Term(
+        "arcs off the circle leave",
+        ("dented", "glints", *WALLS, "deck", HANGING),
+        ((selection, "_LEAST_LEFT_OUT", 1.0),),
+    ),
+    Term("arcs: a wall is seen", DENTED, ((solver.RimFit, "crescent_px", np.inf),)),
+    Term("arcs: the rest is a circle", DENTED, ((selection, "rest_waves", always(value=False)),)),
+    Term("covariance: doubt of the rest", DENTED, ((covariance, "_doubt_of_rest", always(1.0)),)),
     Term("lower edge must settle", (*WALLS, "deck"), ((solver, "_LOWER_EDGE", 0.0),)),
     Term(
         "covariance: alike over arcs",
@@ -213,9 +215,7 @@ TERMS = (
         ((covariance, "arc_covariance", lambda scores, _: np.zeros((len(scores),) * 2)),),
     ),
     Term(
-        "covariance: uneven light",
-        EVERYTHING,
-        ((covariance, "_model_covariance", no_covariance),),
+        "covariance: uneven light", EVERYTHING, ((covariance, "_model_covariance", no_covariance),)
     ),
     Term(
         "covariance: other models",
@@ -236,6 +236,8 @@ def scenes(image: str, count: int) -> list[Scene]:
     if image == HANGING:
         return [scene for seed in range((count + 1) // 2) for scene in _hanging(seed)][:count]
     if image not in PARTS:
+        if image in HARD:
+            return [drawn_scene("disc", seed, HARD[image]) for seed in range(count)]
         return [drawn_scene(image, seed) for seed in range(count)]
     seen = parts(PARTS[image], api.RenderOptions(), (count + 1) // 2, 1, seed=1)
     views = [view for part in seen for view in part.views][:count]

@@ -39,6 +39,20 @@ def _speeding_up(rng: Draw, sub: int) -> NDArray[np.float32]:
     return _along_a_path(rng, sub, float(rng.uniform(0.3, 0.9)))
 
 
+def _dented_once(look: Look, rng: Draw) -> Look:
+    """One dent with steep sides in a tenth of the rim, which a person does not mind."""
+    where, half_width = rng.uniform(-np.pi, np.pi), rng.uniform(0.2, 0.4)
+    depth = rng.uniform(0.03, 0.12)
+
+    def grey(q: Array, m: Array) -> Array:
+        turn = _turn(np.arctan2(q[1], q[0]) - where)
+        deep = depth * np.maximum(1.0 - (turn / half_width) ** 4, 0.0)
+        scale = np.where(np.hypot(*q) < 1.0 + deep, 1.0 / (1.0 + deep), 1.0)
+        return look.grey(q * scale, m)
+
+    return replace(look, grey=grey, reach=max(look.reach, 1.3))
+
+
 def _dented(look: Look, rng: Draw) -> Look:
     """Metal pushed away over one to three arcs of five to twenty degrees."""
     count = int(rng.integers(1, 4))
@@ -56,6 +70,26 @@ def _dented(look: Look, rng: Draw) -> Look:
         return look.grey(q * scale, m)
 
     return replace(look, grey=grey, reach=max(look.reach, 1.25))
+
+
+def _worn_all_round(look: Look, rng: Draw) -> Look:
+    """A rim off its circle by half a percent to one and a half, alike over 15° to 45°.
+
+    The first harmonic, which is a movement of the rim, is among what is drawn.
+    """
+    order = np.arange(1, 13)[:, None]
+    off, alike = rng.uniform(0.005, 0.015), rng.uniform(0.25, 0.8)
+    sizes = np.exp(-0.25 * (order * alike) ** 2)
+    sizes *= off / np.sqrt((sizes**2).sum())
+    waves = rng.normal(0.0, 1.0, (2, len(order), 1)) * sizes
+
+    def grey(q: Array, m: Array) -> Array:
+        around = np.arctan2(q[1], q[0])
+        turns = order * around.reshape(1, -1)
+        deep = (waves[0] * np.cos(turns) + waves[1] * np.sin(turns)).sum(axis=0)
+        return look.grey(q / (1.0 + deep.reshape(around.shape)), m)
+
+    return replace(look, grey=grey, reach=max(look.reach, 1.2))
 
 
 def _glinting(look: Look, rng: Draw) -> Look:
@@ -88,6 +122,8 @@ def _turn(angle: Array) -> Array:
 HARD = {
     "moved": Condition(spread=_moved),
     "moved, speeding up": Condition(spread=_speeding_up),
+    "dented in a tenth": Condition(worn=_dented_once),
     "dented": Condition(worn=_dented),
+    "worn all round": Condition(worn=_worn_all_round),
     "glints": Condition(worn=_glinting),
 }

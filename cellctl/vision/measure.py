@@ -252,4 +252,5 @@ def _stereo(head: StereoHead, hole: Hole, rims: RimPair) -> HoleMeasurement:
         right_ellipse=right.ellipse,
         diameter_m=hole.diameter_m * (left.size_ratio + right.size_ratio) / 2.0,
         epipolar_px=epipolar_px,
+        left_out=max(left.left_out, right.left_out),
     )

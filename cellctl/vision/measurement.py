@@ -35,6 +35,9 @@ class HoleMeasurement:
     """Measured diameter, mean of both cameras."""
     epipolar_px: float
     """Distance of the right point from the epipolar line of the left one."""
+    left_out: float = 0.0
+    """Share of the rim that is off its circle, as by a dent or under a reflex, and has left the
+    fit: that of the image in which it is greater."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -163,6 +163,7 @@ def measurement_to_json(result: PairMeasurement, pose: PartPose | None) -> dict[
                 "covariance_mm2": (hole.covariance_m2 / MM**2).tolist(),
                 "diameter_mm": hole.diameter_m / MM,
                 "epipolar_px": hole.epipolar_px,
+                "left_out": hole.left_out,
             }
             for hole in result.holes
         },

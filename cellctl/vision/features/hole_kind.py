@@ -30,6 +30,9 @@ class RimEvidence(Protocol):
     def in_radii(self, length_px: float, image: int = 0) -> float:
         """A length in one image (0 left, 1 right) over the radius of the rim there."""
 
+    def arcs_left_out(self) -> bool:
+        """Whether arcs that are off the circle have left the fit of an image."""
+
     def both_converged(self) -> bool:
         """Whether the fits of both images settled."""
 

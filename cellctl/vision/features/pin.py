@@ -7,6 +7,9 @@ _BROKEN_EDGE = SecondEdge(0.07, 0.05)
 _LEAST_GAIN = 25.0
 """Fall of chi square in both images together from which on a bore counts as deburred. Walls in
 uneven light alone stay below it."""
+_LEAST_GAIN_BESIDE_DENTS = 250.0
+"""The same where arcs have left the fits: what a dent or a facet leaves of itself in its
+neighbours reaches a hundred, a broken edge all round hundreds in each image."""
 
 
 class Pin(HoleKind):
@@ -16,4 +19,5 @@ class Pin(HoleKind):
 
     def second_edge(self, evidence: RimEvidence) -> SecondEdge | None:
         """A broken edge a pixel or two wide, when both images together ask for it."""
-        return _BROKEN_EDGE if sum(evidence.ring_gains()) > _LEAST_GAIN else None
+        least = _LEAST_GAIN_BESIDE_DENTS if evidence.arcs_left_out() else _LEAST_GAIN
+        return _BROKEN_EDGE if sum(evidence.ring_gains()) > least else None

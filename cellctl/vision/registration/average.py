@@ -60,6 +60,7 @@ def _mean_hole(column: tuple[HoleMeasurement, ...]) -> HoleMeasurement:
         covariance_m2=covariance_m2,
         diameter_m=float(np.mean([item.diameter_m for item in column])),
         epipolar_px=float(np.mean([item.epipolar_px for item in column])),
+        left_out=max(item.left_out for item in column),
     )
 
 

@@ -10,7 +10,8 @@ The walk of one rim through this package:
    be modelled too. The kind of the hole then decides whether a second edge, of a chamfer or of a
    narrow cone, must be fitted in both images at once.
 4. A fit is a least-squares ``problem``: ``shape`` gives the borders between the surfaces at a rim,
-   ``light`` their grey values, ``noise`` the weights. ``solver`` minimises it.
+   ``light`` their grey values, ``noise`` the weights. ``solver`` minimises it. Where no model
+   explains the whole rim, ``arcs`` that are off its circle leave the fit.
 5. ``covariance`` adds to the uncertainty what the residuals show of texture and of an imperfect
    model.
 6. ``stereo_fit`` is the entry: it drives all this, refuses what is no rim, and returns both

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim.arcs import MODEL_PX
 from cellctl.vision.rim.noise import BRIGHT, DARK
-from cellctl.vision.rim.problem import RimProblem
+from cellctl.vision.rim.problem import RimProblem, by_radius
 from cellctl.vision.rim.shape import RimShape
 from cellctl.vision.rim.solver import RimFit
 
@@ -23,6 +24,8 @@ _LOST = 1.4
 """Factor that makes up for what the fit takes out of these sums: it brings their total to zero."""
 _SHRINK = 0.3
 """Share of the mean over all directions in the estimate of each."""
+MOST_LEFT_OUT = 0.45
+"""Share of a rim that may leave its fit: the edges of the rest must be a rim."""
 CHANCE = 2.1
 """Sums over a few arcs reach this multiple of what independent errors give by chance alone. Only
 what exceeds it widens the covariance."""
@@ -59,22 +62,7 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     models which explain the pixels nearly as well; plane units squared.
     """
     problem, solution = fit.problem, fit.solution
-    count = 2 * len(problem.views) + 1
-    rows = [solution.lights + index for index in range(count)]
-    everything = solution.covariance
-    covariance = everything[np.ix_(rows, rows)]
-    unexplained = solution.noise.own(solution.residuals)
-    # To first order this is how far each pixel's residual alone moves the centre.
-    scores = everything[rows] @ solution.design * solution.noise.weights * unexplained
-    offsets = [
-        view.pixels.points - shape.centre[:, None]
-        for view, shape in zip(problem.views, fit.shapes, strict=True)
-    ]
-    # Both images of a joint fit share the sectors: what disturbs one side of a rim disturbs it in
-    # both.
-    x, y = np.concatenate(offsets, axis=1)
-    independent = covariance
-    seen = arc_covariance(scores, np.arctan2(y, x))
+    independent, seen = _independent(fit), _seen(fit)
     covariance = _widened(independent, seen)
     outside = solution.outside
     grey = np.concatenate([view.pixels.grey for view in problem.views]) - solution.residuals
@@ -85,10 +73,62 @@ def with_covariance(fit: RimFit, spread: Array) -> RatedFit:
     # stands for them.
     covariance += _model_covariance(problem, grey, outside, contrast)
     covariance[: len(spread), : len(spread)] += spread
-    centre = slice(2 * len(problem.views))
-    inverse = np.linalg.inv(independent[centre, centre])
-    misfit = float(np.trace(inverse @ seen[centre, centre])) / len(inverse)
+    misfit = _ratio(fit, seen, independent)
+    if problem.arcs_may_leave and misfit > CHANCE:
+        # Arcs have left the fit and the rest is no circle either: what it shows is the part that
+        # the fit could not take up, and the same error has moved the centre, too.
+        covariance = covariance * misfit
+    covariance = covariance * _doubt_of_rest(solution.noise.share_left_out)
     return RatedFit(fit, covariance, contrast, misfit)
+
+
+def _doubt_of_rest(left_out: float) -> float:
+    """Factor of the covariance by the share of a rim that has left its fit.
+
+    Which arcs leave is told by the others, and by ever fewer of them: their verdict is worth what
+    they are more than those that are off, and nothing at a half.
+    """
+    share = min(left_out, MOST_LEFT_OUT)
+    return 1.0 + (share / (1.0 - 2.0 * share)) ** 2
+
+
+def misfit_beyond_model(fit: RimFit) -> float:
+    """The misfit over what independent errors and a small error of the model itself explain.
+
+    In images with hardly any noise the model is the larger error of the two.
+    """
+    problem, solution = fit.problem, fit.solution
+    rows = slice(solution.lights, solution.lights + problem.geometry)
+    by_grey = solution.noise.weigh(solution.covariance[rows] @ solution.design)
+    moved = by_grey * by_radius(problem, solution) * MODEL_PX
+    sums = _sums_over_arcs(moved, problem.azimuths(solution.vector))
+    of_model = sums @ sums.T
+    return _ratio(fit, _seen(fit), _independent(fit) + of_model)
+
+
+def _ratio(fit: RimFit, seen: Array, expected: Array) -> float:
+    """Mean variance of the centres that is seen, over the expected one in each direction."""
+    centre = slice(2 * len(fit.problem.views))
+    inverse = np.linalg.inv(expected[centre, centre])
+    return float(np.trace(inverse @ seen[centre, centre])) / len(inverse)
+
+
+def _independent(fit: RimFit) -> Array:
+    """Covariance of centres and radius if all errors of the pixels were independent."""
+    rows = slice(fit.solution.lights, fit.solution.lights + fit.problem.geometry)
+    return np.asarray(fit.solution.covariance[rows, rows])
+
+
+def _seen(fit: RimFit) -> Array:
+    """Covariance of centres and radius that the residuals show, summed over arcs."""
+    solution = fit.solution
+    rows = slice(solution.lights, solution.lights + fit.problem.geometry)
+    unexplained = solution.noise.own(solution.residuals)
+    # To first order this is how far each pixel's residual alone moves the centre.
+    scores = solution.covariance[rows] @ solution.design * solution.noise.weights * unexplained
+    # Both images of a joint fit share the sectors: what disturbs one side of a rim disturbs it in
+    # both.
+    return arc_covariance(scores, fit.problem.azimuths(solution.vector))
 
 
 def _model_covariance(problem: RimProblem, grey: Array, outside: Array, contrast: float) -> Array:
@@ -111,9 +151,14 @@ def arc_covariance(scores: Array, azimuth: Array) -> Array:
     and of an imperfect model of the light are alike in neighbouring pixels: this is the estimator
     of Newey and West for correlated errors, on the circle.
     """
-    sector = ((azimuth + np.pi) / (2.0 * np.pi) * _BINS).astype(int) % _BINS
-    sums = np.stack([np.bincount(sector, row, minlength=_BINS) for row in scores])
+    sums = _sums_over_arcs(scores, azimuth)
     return np.asarray(_LOST * sums @ _KERNEL @ sums.T)
+
+
+def _sums_over_arcs(scores: Array, azimuth: Array) -> Array:
+    """Sums of scores (k, n) over the pixels of each sector, shape (k, sectors)."""
+    sector = ((azimuth + np.pi) / (2.0 * np.pi) * _BINS).astype(int) % _BINS
+    return np.stack([np.bincount(sector, row, minlength=_BINS) for row in scores])
 
 
 def _widened(covariance: Array, seen: Array) -> Array:

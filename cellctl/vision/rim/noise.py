@@ -6,10 +6,11 @@ though: seen beside it, it tells how much it adds at it. To the fit strokes are 
 is correlated along the lay and not across it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
 
 from cellctl.geometry.pose import Array
@@ -54,23 +55,34 @@ def robust_sigma(residuals: Array) -> float:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class PixelNoise:
-    """Errors of the pixels: independent ones, and strokes of the face that many pixels share."""
+    """Errors of the pixels: independent ones, and those that many pixels share: strokes of the
+    face, and arcs of a worn rim."""
 
     weights: Array
     """One over the variance of each pixel's own error, less for outliers, shape (n,)."""
     strokes: csr_array
-    """Grey that each stroke adds to each pixel at one standard deviation, shape (k, n).
+    """Grey that each stroke or arc adds to each pixel at one standard deviation, shape (k, n).
 
     Sparse, because no more than two strokes reach a pixel: dense rows take most of a fit's time.
     """
     posterior: Array
     """Covariance of the strokes' heights given the pixels, shape (k, k)."""
+    variance: Array
+    """Of each pixel's own error, outlier or not, shape (n,)."""
+    left_out: NDArray[np.bool_]
+    """Pixels of arcs that have left the fit, shape (n,)."""
+
+    @property
+    def share_left_out(self) -> float:
+        """Share of the rim that has left the fit."""
+        return float(np.mean(self.left_out))
 
     @classmethod
     def of(cls, weights: Array, strokes: csr_array) -> "PixelNoise":
         """Noise from its parts, with the posterior of the strokes' heights computed."""
         normal = (csr_array(strokes * weights) @ strokes.T).toarray() + np.eye(strokes.shape[0])
-        return cls(weights, strokes, np.asarray(np.linalg.inv(normal)))
+        inverse = np.asarray(np.linalg.inv(normal))
+        return cls(weights, strokes, inverse, 1.0 / weights, np.zeros(len(weights), dtype=bool))
 
     def weigh(self, rows: Array) -> Array:
         """Rows (…, n) times the inverse of the errors' covariance.
@@ -102,9 +114,17 @@ def noise_of(residuals: Array, outside: Array, strokes: csr_array) -> PixelNoise
         own, height = _own_and_strokes(residuals[bright], strokes[:, bright])
     sigma = np.sqrt(dark**2 + (own**2 - dark**2) * outside)
     seen = csr_array(strokes * height) if height > _LEAST_STROKE_GREY else strokes[:0]
-    noise = PixelNoise.of(sigma**-2.0, seen)
-    scaled = np.abs(noise.own(residuals)) / sigma
-    return PixelNoise.of(np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / sigma**2, seen)
+    return less_outliers(residuals, sigma**2, seen)
+
+
+def less_outliers(residuals: Array, variance: Array, strokes: csr_array) -> PixelNoise:
+    """Noise in which outliers weigh less, where ``strokes`` (k, n) do not explain them.
+
+    ``variance`` (n,) is that of the pixels' own errors.
+    """
+    scaled = np.abs(PixelNoise.of(1.0 / variance, strokes).own(residuals)) / np.sqrt(variance)
+    weights = np.minimum(1.0, _HUBER / np.maximum(scaled, 1e-9)) / variance
+    return replace(PixelNoise.of(weights, strokes), variance=variance)
 
 
 def _own_and_strokes(residuals: Array, strokes: csr_array) -> tuple[float, float]:

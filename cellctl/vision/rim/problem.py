@@ -13,6 +13,7 @@ import numpy as np
 from scipy.sparse import csr_array
 
 from cellctl.geometry.pose import Array
+from cellctl.vision.rim.arcs import with_arcs
 from cellctl.vision.rim.light import LightModel, Surface, surfaces
 from cellctl.vision.rim.noise import PixelNoise, no_strokes, noise_of, stroke_pattern
 from cellctl.vision.rim.shape import Border, RimPixels, RimShape, borders
@@ -85,6 +86,8 @@ class RimProblem:
     """Infinite where nothing is known."""
     across_lay: Array | None = None
     """Unit vector in the plane across the lay of the face, if it has one."""
+    arcs_may_leave: bool = False
+    """Whether arcs of the rim may be off its circle."""
     ring_level_grey: float = 3.0
     """Standard deviation of the difference of the ring's mean grey between the cameras."""
     ring_variation_grey: float = 0.6
@@ -94,6 +97,18 @@ class RimProblem:
     def unit_px(self) -> float:
         """Plane units in a pixel of the first view."""
         return self.views[0].pixels.unit_px
+
+    @property
+    def geometry(self) -> int:
+        """Number of the first joint parameters: x and y in every view, then the radius."""
+        return 2 * len(self.views) + 1
+
+    def azimuths(self, vector: Array) -> Array:
+        """Directions of all pixels from the centre, in the plane, rad."""
+        x, y = np.concatenate(
+            [view.pixels.points - view.shape(vector).centre[:, None] for view in self.views], axis=1
+        )
+        return np.asarray(np.arctan2(y, x))
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,7 +184,15 @@ def relinearised(problem: RimProblem, solution: RimSolution, *, weigh: bool = Tr
     noise = solution.noise
     if weigh:
         noise = noise_of(solution.residuals, solution.outside, _strokes(problem, solution))
+    if weigh and problem.arcs_may_leave:
+        azimuths = problem.azimuths(solution.vector)
+        noise = with_arcs(noise, solution.residuals, by_radius(problem, solution), azimuths)
     return solve_light(problem, solution.vector, noise)
+
+
+def by_radius(problem: RimProblem, solution: RimSolution) -> Array:
+    """Derivative of the grey values by the radius in px, shape (n,)."""
+    return np.asarray(solution.design[solution.lights + problem.geometry - 1] * problem.unit_px)
 
 
 def _strokes(problem: RimProblem, solution: RimSolution) -> csr_array:

@@ -11,12 +11,17 @@ import numpy as np
 from scipy.special import expit
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.features.hole import Hole
 from cellctl.vision.features.hole_kind import SecondEdge
-from cellctl.vision.rim.covariance import CHANCE, with_covariance
+from cellctl.vision.rim.arcs import rest_waves
+from cellctl.vision.rim.covariance import (
+    CHANCE,
+    MOST_LEFT_OUT,
+    misfit_beyond_model,
+    with_covariance,
+)
 from cellctl.vision.rim.fit_input import RimFitInput
 from cellctl.vision.rim.light import LightModel
-from cellctl.vision.rim.problem import add_to_diagonal, with_unit_diagonal
+from cellctl.vision.rim.problem import add_to_diagonal, by_radius, with_unit_diagonal
 from cellctl.vision.rim.shape import RimShape, outside_circles, outside_walls
 from cellctl.vision.rim.solver import (
     RimFit,
@@ -27,7 +32,7 @@ from cellctl.vision.rim.solver import (
     two_image_problem,
 )
 
-_SIGNIFICANT_GAIN = 15.0
+SIGNIFICANT_GAIN = 15.0
 """Fall of chi square by up to six terms that two rims in a hundred show by chance."""
 _RIDGE = 1e-6
 """Keeps terms that the fit already models from counting as evidence."""
@@ -42,7 +47,6 @@ _HINT_GAIN = 4.0
 _WORSE = 0.4
 """Rise of the information criterion for each pixel, residuals half as large again in their squares,
 beyond which a smooth light inside is no better explanation than a wall."""
-
 _RING_SLOPES = (0.0, 1.0)
 """A flat ring, and a cone of 90°."""
 _BLUR_SIGMA_PX, _KNOWN_BLUR_SIGMA_PX = 0.25, 0.03
@@ -53,6 +57,10 @@ _UNEVEN_GREY = 15.0
 """Expected unevenness of the turns of a thread, or of what is seen through a bore: standard
 deviation of each term."""
 _NO_SPREAD: Array = np.zeros((2, 2))
+_LEAST_LEFT_OUT = 0.07
+"""Share of a rim from which on what has left its fit is no chance: three arcs."""
+_DISTURBED = 5.0
+"""Misfit from which on something else than texture or a burr must be at a rim: these reach 4.5."""
 _PIXELS_ALIKE = 10.0
 """Number of neighbouring pixels whose model errors are alike: evidence is divided by it."""
 
@@ -84,7 +92,7 @@ class ScoreTests:
         """Whether the inside of the rim is not even."""
         below, cos, sin = 1.0 - self._radius, self._cos, self._sin
         rows = np.stack([cos, sin, below, below * cos, below * sin, below * below])
-        return self._gain((1.0 - self._solution.outside) * rows) > _SIGNIFICANT_GAIN
+        return self._gain((1.0 - self._solution.outside) * rows) > SIGNIFICANT_GAIN
 
     def ring_gain(self) -> float:
         """Largest fall of chi square that a narrow ring of another grey would bring."""
@@ -123,24 +131,77 @@ class SelectedFit:
 
 
 def fit_single_image(given: RimFitInput) -> SelectedFit:
-    """Fit a rim in one image by itself, with a wall below it or without."""
+    """Fit a rim in one image by itself, with a wall below it or without.
+
+    Where no model explains the rim all round, all are tried again without the arcs that are off the
+    circle.
+    """
+    models = _models_of_a_circle(given)
+    chosen = _likelier(models[0], models[-1])
+    if misfit_beyond_model(chosen.fit) < _DISTURBED:
+        return chosen
+    return _rest_or_whole(_of_rest([_without_arcs(given, model) for model in models]), chosen)
+
+
+def _of_rest(models: list[RimFit]) -> SelectedFit:
+    """The likeliest of models each without the arcs that are off its circle; the first has no wall.
+
+    A wall that is hardly seen has terms enough to follow a dent, and takes the rim with it: beside
+    dents only what is wider than the blur of its edge counts as one.
+    """
+    first, *others = (model for model in models if model.crescent_px >= model.shapes[0].blur_px)
+    rest = SelectedFit(first, _NO_SPREAD)
+    for other in others:
+        rest = _likelier(rest.fit, other)
+    return rest
+
+
+def _rest_or_whole(rest: SelectedFit, whole: SelectedFit) -> SelectedFit:
+    """The fit without arcs, if it is no chance that they have left and it is disturbed no more.
+
+    Where those that stay are no circle, the centre is as doubtful as the two fits are from each
+    other, in any direction.
+    """
+    problem, solution = rest.fit.problem, rest.fit.solution
+    told = _LEAST_LEFT_OUT < solution.noise.share_left_out < MOST_LEFT_OUT
+    if not told or misfit_beyond_model(rest.fit) > _DISTURBED:
+        return whole
+    azimuths, slopes = problem.azimuths(solution.vector), by_radius(problem, solution)
+    if not rest_waves(solution.noise, solution.residuals, slopes, azimuths):
+        return rest
+    centres = 2 * len(problem.views)
+    off = solution.vector[:centres] - whole.fit.solution.vector[:centres]
+    doubt = np.zeros(len(rest.spread))
+    doubt[:centres] = np.repeat((off.reshape(-1, 2) ** 2).sum(axis=1), 2)
+    return SelectedFit(rest.fit, rest.spread + np.diag(doubt))
+
+
+def _without_arcs(given: RimFitInput, model: RimFit) -> RimFit:
+    """The fit of a model from where the edges are, without the arcs that are off the circle."""
+    start = np.array([*given.centre, given.radius, *model.solution.vector[3:]])
+    return full_fit(replace(model.problem, arcs_may_leave=True), start)
+
+
+def _models_of_a_circle(given: RimFitInput) -> list[RimFit]:
+    """Fits with more and more light inside, as far as the pixels ask for it."""
     kind, across_lay = given.roi.kind, given.across_lay()
     light, radius = LightModel(cone=kind.cone), given.roi.nominal_radius
     bare = RimShape(given.centre, given.radius, _START_BLUR_PX)
     problem = single_image_problem(given.pixels, bare, light, radius, across_lay)
     plain = full_fit(problem, bare.vector)
     if not kind.may_show_wall:
-        return SelectedFit(plain, _NO_SPREAD)
+        return [plain]
     # The test needs one linear solve, a further fit many. A rim that it passes is done.
     tests = ScoreTests(plain)
     ratio, gain = tests.likely_wall([depth_m / given.roi.distance_m for depth_m in _WALL_DEPTHS_M])
     uneven = tests.uneven_inside()
     if gain < _HINT_GAIN and not uneven:
-        return SelectedFit(plain, _NO_SPREAD)
+        return [plain]
     shape = replace(plain.shapes[0], wall_ratio=ratio)
     with_wall = single_image_problem(given.pixels, shape, light, radius, across_lay)
     walled = full_fit(with_wall, shape.vector)
-    return _likelier(plain, _of_uneven_inside(plain, walled) if uneven else walled)
+    better = _of_uneven_inside(plain, walled) if uneven else walled
+    return [plain, walled] if better is walled else [plain, walled, better]
 
 
 def _of_uneven_inside(plain: RimFit, walled: RimFit) -> RimFit:
@@ -173,47 +234,6 @@ def _likelier(plain: RimFit, other: RimFit) -> SelectedFit:
     return SelectedFit(best, np.outer(off, off) * against)
 
 
-class StereoEvidence:
-    """The evidence of fits with one edge, as ``RimEvidence`` describes it."""
-
-    def __init__(
-        self, given: tuple[RimFitInput, RimFitInput], fits: tuple[SelectedFit, SelectedFit]
-    ) -> None:
-        self._given, self._fits = given, [selected.fit for selected in fits]
-
-    @property
-    def hole(self) -> Hole:
-        """The hole as the drawing gives it."""
-        return self._given[0].roi.hole
-
-    @property
-    def clear_px(self) -> tuple[float, float]:
-        """Distance to the next edge outside the rim, left and right; infinite when none is near."""
-        return self._given[0].clear_px, self._given[1].clear_px
-
-    def in_radii(self, length_px: float, image: int = 0) -> float:
-        """A length in one image (0 left, 1 right) over the radius of the rim there."""
-        given = self._given[image]
-        return length_px * given.patch.unit_px / given.radius
-
-    def both_converged(self) -> bool:
-        """Whether the fits of both images settled."""
-        return all(fit.converged for fit in self._fits)
-
-    def ring_gains(self) -> tuple[float, float]:
-        """Fall of chi square, left and right, if a narrow ring of another grey were modelled."""
-        left, right = (ScoreTests(fit).ring_gain() for fit in self._fits)
-        return left, right
-
-    def ring_seen(self) -> bool:
-        """Whether a narrow ring explains more than chance in at least one image."""
-        return max(self.ring_gains()) > _SIGNIFICANT_GAIN
-
-    def uneven_inside(self) -> bool:
-        """Whether the inside is uneven by more than chance in at least one image."""
-        return any(ScoreTests(fit).uneven_inside() for fit in self._fits)
-
-
 def fit_two_edges(
     given: tuple[RimFitInput, RimFitInput],
     second: SecondEdge,
@@ -232,23 +252,32 @@ def fit_two_edges(
         blurs, blur_sigma = blur_px, _KNOWN_BLUR_SIGMA_PX
     pixels, across_lay = (given[0].pixels, given[1].pixels), given[0].across_lay()
 
-    def coarse(sigma: float, **second_edge: float) -> RimFit:
+    def coarse(sigma: float, *, arcs: bool, **second_edge: float) -> RimFit:
         left, right = (
             RimShape(one.centre, one.roi.nominal_radius, blur, **second_edge)
             for one, blur in zip(given, blurs, strict=True)
         )
         light = LightModel(uneven_grey=_UNEVEN_GREY)
         problem = two_image_problem(pixels, (left, right), light, (blur_sigma, sigma), across_lay)
-        return coarse_fit(problem, problem.mean)
+        return coarse_fit(replace(problem, arcs_may_leave=arcs), problem.mean)
+
+    def likeliest(*, arcs: bool) -> SelectedFit:
+        models = [
+            coarse(second.sigma, arcs=arcs, ring_ratio=ring, ring_slope=slope)
+            for slope in _RING_SLOPES
+        ]
+        if not given[0].roi.kind.turns:
+            # In an image out of focus a bore with a wall looks as if it had a ring.
+            models.append(coarse(_WALL_SIGMAS * wall, arcs=arcs, wall_ratio=wall))
+        return _likeliest(models)
 
     # A fit does not always come up to a wall from far below its depth.
     ring, wall = 1.0 + second.width, wall_ratio or _WALL_M / given[0].roi.distance_m
     # Coarse fits are enough to compare the models; only the likeliest one is brought to its end.
-    models = [coarse(second.sigma, ring_ratio=ring, ring_slope=slope) for slope in _RING_SLOPES]
-    if not given[0].roi.kind.turns:
-        # In an image out of focus a bore with a wall looks as if it had a ring.
-        models.append(coarse(_WALL_SIGMAS * wall, wall_ratio=wall))
-    return _likeliest(models)
+    chosen = likeliest(arcs=False)
+    if misfit_beyond_model(chosen.fit) < _DISTURBED:
+        return chosen
+    return _rest_or_whole(likeliest(arcs=True), chosen)
 
 
 def _likeliest(models: list[RimFit]) -> SelectedFit:

@@ -27,6 +27,9 @@ _WALL_SIGMAS = 4.0
 out of sight, nothing else holds its depth."""
 _COARSE_PX, _FINE_PX = 0.03, 1.5e-3
 """Change of the rim in a round below which a fit has settled."""
+_WEIGHING, _WEIGHING_ARCS = 2, 4
+"""Rounds in which the noise follows the residuals. A dent that has pulled at the rim until then is
+told from the rest of it only in the course of a few."""
 _MAX_ROUNDS, _MAX_STEPS = 30, 8
 """Most fits settle in four rounds; one in a hundred creeps for more than twelve. A rim that is
 given up for that costs the whole run."""
@@ -56,18 +59,32 @@ class RimFit:
         """The geometry of the rim in each image."""
         return tuple(view.shape(self.solution.vector) for view in self.problem.views)
 
+    @property
+    def crescent_px(self) -> float:
+        """Width of the visible wall where it is widest, of one image; infinite without a wall."""
+        shape = self.shapes[0]
+        if shape.wall_ratio is None:
+            return float(np.inf)
+        farthest_px = (np.linalg.norm(shape.centre) + shape.radius) / self.problem.unit_px
+        return float(farthest_px * shape.wall_ratio / (1.0 + shape.wall_ratio))
+
     def bic(self, *, held: bool = False) -> float:
         """Bayesian information criterion, to compare models on the same pixels.
 
         An unknown that a prior holds is not free to follow the noise. With ``held`` it counts by
         the share of it that the pixels determine, for models that hold very many.
         """
-        residuals = np.abs(self.solution.residuals)
+        noise, residuals = self.solution.noise, self.solution.residuals
+        if self.problem.arcs_may_leave:
+            residuals = noise.own(residuals)
+        residuals = np.abs(residuals)
         count = len(residuals)
         # Clipped like the weights of the fit: otherwise one scratch would decide between two
         # models.
         limit = 4.0 * max(median(residuals), 0.2)
-        mean_square = float(np.mean(np.minimum(residuals, limit) ** 2))
+        # An arc that has left the fit is not explained, however the model looks there.
+        unexplained = np.where(noise.left_out, limit, np.minimum(residuals, limit))
+        mean_square = float(np.mean(unexplained**2))
         prior = self.solution.precision
         free = float(np.count_nonzero(prior == 0.0))
         if held:
@@ -131,12 +148,14 @@ def two_image_problem(
 
 def full_fit(problem: RimProblem, start: Array) -> RimFit:
     """Fit from a vector of joint parameters within 1–2 px of the truth."""
-    return _minimised(problem, initial_solution(problem, start), _FINE_PX, weighing_rounds=2)
+    rounds = _WEIGHING_ARCS if problem.arcs_may_leave else _WEIGHING
+    return _minimised(problem, initial_solution(problem, start), _FINE_PX, weighing_rounds=rounds)
 
 
 def coarse_fit(problem: RimProblem, start: Array) -> RimFit:
     """A quick fit to a few hundredths of a pixel: enough to compare models, then ``refine``."""
-    return _minimised(problem, initial_solution(problem, start), _COARSE_PX, weighing_rounds=1)
+    rounds = (_WEIGHING_ARCS if problem.arcs_may_leave else _WEIGHING) - 1
+    return _minimised(problem, initial_solution(problem, start), _COARSE_PX, weighing_rounds=rounds)
 
 
 def refine(coarse: RimFit) -> RimFit:

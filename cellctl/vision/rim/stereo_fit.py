@@ -7,12 +7,14 @@ import numpy as np
 from cellctl.geometry.pose import Array
 from cellctl.vision.camera.ellipse import Ellipse, ellipse_of_circle
 from cellctl.vision.camera.triangulation import joint_covariance
+from cellctl.vision.features.hole import Hole
 from cellctl.vision.rim.covariance import RatedFit, with_covariance
 from cellctl.vision.rim.fit_input import RimFitInput, fit_input
 from cellctl.vision.rim.roi import RADIUS_TOLERANCE, LocatedRim, RimRoi
 from cellctl.vision.rim.selection import (
+    SIGNIFICANT_GAIN,
+    ScoreTests,
     SelectedFit,
-    StereoEvidence,
     fit_single_image,
     fit_two_edges,
 )
@@ -50,6 +52,8 @@ class Rim:
     blur_px: float
     misfit: float
     """As in ``RatedFit``."""
+    left_out: float = 0.0
+    """Share of the rim that is off its circle and has left the fit."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,6 +68,51 @@ class RimPair:
     """Fits of each image by itself: they show its spread."""
     one_edge: bool
     """Whether these fits are the result: a second edge looks like a spread."""
+
+
+class StereoEvidence:
+    """The evidence of fits with one edge, as ``RimEvidence`` describes it."""
+
+    def __init__(
+        self, given: tuple[RimFitInput, RimFitInput], fits: tuple[SelectedFit, SelectedFit]
+    ) -> None:
+        self._given, self._fits = given, [selected.fit for selected in fits]
+
+    @property
+    def hole(self) -> Hole:
+        """The hole as the drawing gives it."""
+        return self._given[0].roi.hole
+
+    @property
+    def clear_px(self) -> tuple[float, float]:
+        """Distance to the next edge outside the rim, left and right; infinite when none is near."""
+        return self._given[0].clear_px, self._given[1].clear_px
+
+    def in_radii(self, length_px: float, image: int = 0) -> float:
+        """A length in one image (0 left, 1 right) over the radius of the rim there."""
+        given = self._given[image]
+        return length_px * given.patch.unit_px / given.radius
+
+    def arcs_left_out(self) -> bool:
+        """Whether arcs that are off the circle have left the fit of an image."""
+        return any(fit.solution.noise.left_out.any() for fit in self._fits)
+
+    def both_converged(self) -> bool:
+        """Whether the fits of both images settled."""
+        return all(fit.converged for fit in self._fits)
+
+    def ring_gains(self) -> tuple[float, float]:
+        """Fall of chi square, left and right, if a narrow ring of another grey were modelled."""
+        left, right = (ScoreTests(fit).ring_gain() for fit in self._fits)
+        return left, right
+
+    def ring_seen(self) -> bool:
+        """Whether a narrow ring explains more than chance in at least one image."""
+        return max(self.ring_gains()) > SIGNIFICANT_GAIN
+
+    def uneven_inside(self) -> bool:
+        """Whether the inside is uneven by more than chance in at least one image."""
+        return any(ScoreTests(fit).uneven_inside() for fit in self._fits)
 
 
 def measure_rims(
@@ -171,6 +220,7 @@ def _rim(given: RimFitInput, rated: RatedFit, index: int, size_tolerance: float)
         size_ratio=shape.radius / given.roi.nominal_radius,
         blur_px=shape.blur_px,
         misfit=rated.misfit,
+        left_out=rated.fit.solution.noise.share_left_out,
     )
 
 

@@ -23,10 +23,11 @@ class Evidence:
         hole: Hole | None = None,
         converged: bool = True,
         uneven: bool = False,
+        dented: bool = False,
     ) -> None:
         self._hole = hole
         self.gains, self.clear_px = gains, clear_px
-        self.converged, self.uneven = converged, uneven
+        self.converged, self.uneven, self.dented = converged, uneven, dented
 
     @property
     def hole(self) -> Hole:
@@ -38,6 +39,9 @@ class Evidence:
 
     def both_converged(self) -> bool:
         return self.converged
+
+    def arcs_left_out(self) -> bool:
+        return self.dented
 
     def ring_gains(self) -> tuple[float, float]:
         return self.gains
@@ -76,6 +80,12 @@ def test_a_bore_is_deburred_when_both_images_together_say_so() -> None:
     edge = KINDS["pin"].second_edge(Evidence((13.0, 13.0)))
     assert edge is not None
     assert edge.width == 0.07
+
+
+def test_what_a_dent_leaves_of_itself_is_no_broken_edge() -> None:
+    pin = KINDS["pin"]
+    assert pin.second_edge(Evidence((60.0, 50.0), dented=True)) is None
+    assert pin.second_edge(Evidence((300.0, 200.0), dented=True)) is not None
 
 
 @pytest.mark.parametrize(
