@@ -2,18 +2,22 @@
 
 import asyncio
 import importlib
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 from scipy.spatial.transform import RigidTransform
 
+from cellctl.api.modbus.interface import PlcInterface
 from cellctl.api.modbus.publisher import StatusPublisher
 from cellctl.clock import now_s
 from cellctl.command.arbiter import DISK_TIMEOUT_S, CommandArbiter
+from cellctl.command.arrivals import ArrivalClock
 from cellctl.command.submission import Submission
+from cellctl.daemon.supervision import supervise
+from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors import CellError
 from cellctl.errors.line import LineLostInContact
 from cellctl.packml.command import Command
@@ -181,6 +185,18 @@ class DaemonRig:
             return await self.arbiter.submit(Submission(command))
         self._seq += 1
         return await self.arbiter.submit(RigSubmission(command, self._seq, self))
+
+    def supervision(self, port: PaperPort) -> Coroutine[Any, Any, None]:
+        """What the daemon watches until its end, with this port of the line."""
+        return supervise(
+            self.bench.as_cell,
+            self.unit,
+            cast(PlcInterface, port),
+            self.publisher,
+            self.archive,
+            vitals=DaemonVitals(lambda: None),
+            arrivals=ArrivalClock(),
+        )
 
     async def to(self, *states: State) -> State:
         return await self.unit.machine.wait_for(*states, timeout_s=WAIT_S)

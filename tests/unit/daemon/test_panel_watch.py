@@ -1,15 +1,11 @@
 """What a robot reports of its panel while it stands is a fault at once, not at its next move."""
 
 import asyncio
-from typing import Any, cast
+from typing import Any
 
 import pytest
 
-from cellctl.api.modbus.interface import PlcInterface
-from cellctl.command.arrivals import ArrivalClock
 from cellctl.daemon.panel_watch import PanelWatch
-from cellctl.daemon.supervision import supervise
-from cellctl.daemon.vitals import DaemonVitals
 from cellctl.errors.link import StaleData
 from cellctl.guard.report import GuardTrip, TripReason
 from cellctl.interfaces import RobotMode
@@ -42,19 +38,7 @@ class Port(PaperPort):
 
 async def test_an_emergency_stop_of_150_ms_in_contact_aborts_the_run(rig: DaemonRig) -> None:
     await in_contact(rig)
-    line = cast(PlcInterface, Port())
-    vitals = DaemonVitals(lambda: None)
-    daemon = asyncio.create_task(
-        supervise(
-            rig.bench.as_cell,
-            rig.unit,
-            line,
-            rig.publisher,
-            rig.archive,
-            vitals=vitals,
-            arrivals=ArrivalClock(),
-        )
-    )
+    daemon = asyncio.create_task(rig.supervision(Port()))
     rig.bench.cell.main.looks = PRESSED
     await asyncio.sleep(0.15)
     rig.bench.cell.main.looks = {}
@@ -122,19 +106,7 @@ LATCHED = {"stop_latched": True, "unasked_latch": "no heartbeat for 0.6 s"}
 
 async def test_a_latch_that_nobody_has_asked_for_aborts_the_run_at_once(rig: DaemonRig) -> None:
     await in_contact(rig)
-    line = cast(PlcInterface, Port())
-    vitals = DaemonVitals(lambda: None)
-    daemon = asyncio.create_task(
-        supervise(
-            rig.bench.as_cell,
-            rig.unit,
-            line,
-            rig.publisher,
-            rig.archive,
-            vitals=vitals,
-            arrivals=ArrivalClock(),
-        )
-    )
+    daemon = asyncio.create_task(rig.supervision(Port()))
     await asyncio.sleep(0.15)
     rig.bench.cell.main.looks = LATCHED
     await rig.to(State.ABORTED)

@@ -1,17 +1,13 @@
 """Links, trips, heartbeat, and the death of a part of the daemon."""
 
 import asyncio
-from typing import cast
 
 import pytest
 
-from cellctl.api.modbus.interface import PlcInterface
 from cellctl.cell.time_limits import TimeLimits
-from cellctl.command.arrivals import ArrivalClock
 from cellctl.config import CellConfig
 from cellctl.daemon.app import until_told
-from cellctl.daemon.supervision import LinkMonitor, supervise
-from cellctl.daemon.vitals import DaemonVitals
+from cellctl.daemon.supervision import LinkMonitor
 from cellctl.errors.force import GuardDied
 from cellctl.errors.internal import Unexpected
 from cellctl.errors.line import LineTaskDied
@@ -179,18 +175,7 @@ class Port(PaperPort):
 
 async def supervised(rig: DaemonRig, stop: asyncio.Event) -> tuple[Port, asyncio.Task[None]]:
     port = Port()
-    line = cast(PlcInterface, port)
-    vitals = DaemonVitals(lambda: None)
-    work = supervise(
-        rig.bench.as_cell,
-        rig.unit,
-        line,
-        rig.publisher,
-        rig.archive,
-        vitals=vitals,
-        arrivals=ArrivalClock(),
-    )
-    task = asyncio.create_task(until_told(stop, work))
+    task = asyncio.create_task(until_told(stop, rig.supervision(port)))
     await rig.until(lambda: port.beats > 0)
     return port, task
 
