@@ -14,7 +14,7 @@ from scipy.sparse import csr_array, vstack
 from cellctl.geometry.pose import Array
 from cellctl.vision.rim.noise import PixelNoise, less_outliers, median, robust_sigma
 
-_ARCS = 36
+ARCS = 36
 """Of 10° each: at a rim of 20 px three pixels long, about as long as an edge is blurred."""
 MODEL_PX = 0.01
 """How far arcs of a whole rim may be off its circle because the model of light and blur is not
@@ -44,9 +44,14 @@ _LEAST_SPREAD = 0.5
 """Least determinant of such a triple: arcs close together say little of a centre."""
 _REFINEMENTS = 3
 
-_ANGLES: Array = (np.arange(_ARCS, dtype=float) + 0.5) * (2.0 * np.pi / _ARCS) - np.pi
-_DESIGN: Array = np.column_stack([np.ones(_ARCS), np.cos(_ANGLES), np.sin(_ANGLES)])
+_ANGLES: Array = (np.arange(ARCS, dtype=float) + 0.5) * (2.0 * np.pi / ARCS) - np.pi
+_DESIGN: Array = np.column_stack([np.ones(ARCS), np.cos(_ANGLES), np.sin(_ANGLES)])
 """How far an arc moves out when radius, x and y of the circle change."""
+
+
+def arc_of(azimuth: Array) -> NDArray[np.intp]:
+    """The arc in which each pixel lies, by its direction from the centre in rad, shape (n,)."""
+    return np.asarray(((azimuth + np.pi) / (2.0 * np.pi) * ARCS).astype(int) % ARCS)
 
 
 def with_arcs(noise: PixelNoise, residuals: Array, by_radius: Array, azimuth: Array) -> PixelNoise:
@@ -55,14 +60,14 @@ def with_arcs(noise: PixelNoise, residuals: Array, by_radius: Array, azimuth: Ar
     ``by_radius`` is the derivative of the grey values by the radius in px, ``azimuth`` the
     direction from the centre in which each pixel lies, rad.
     """
-    arc = _arc_of(azimuth)
+    arc = arc_of(azimuth)
     shown, variance, seen = _shown(arc, noise, residuals, by_radius)
     off = _off_circle(shown, variance, seen)
     worn = max(robust_sigma(off[seen]) ** 2 - median(variance[seen]), 0.0)
     sigmas = np.abs(off) / np.sqrt(max(worn, MODEL_PX**2) + variance)
     far = (sigmas > _FAR) | _ragged(residuals - by_radius * shown[arc], noise.variance, arc)
     far |= (np.roll(far, 1) | np.roll(far, -1)) & (sigmas > _BESIDE_FAR)
-    shared = csr_array((by_radius * np.sqrt(worn), (arc, np.arange(len(arc)))), (_ARCS, len(arc)))
+    shared = csr_array((by_radius * np.sqrt(worn), (arc, np.arange(len(arc)))), (ARCS, len(arc)))
     shared = shared[np.flatnonzero(worn > _LEAST_WEAR**2 * variance)]
     kept = less_outliers(residuals, noise.variance, csr_array(vstack([noise.strokes, shared])))
     left_out = far[arc]
@@ -77,17 +82,12 @@ def rest_waves(noise: PixelNoise, residuals: Array, by_radius: Array, azimuth: A
     other, and which of them look like one is chance. Arguments as of ``with_arcs``, whose noise it
     is.
     """
-    arc = _arc_of(azimuth)
+    arc = arc_of(azimuth)
     off, variance, seen = _shown(arc, noise, residuals, by_radius)
-    stay = seen & (np.bincount(arc, noise.left_out, minlength=_ARCS) == 0)
+    stay = seen & (np.bincount(arc, noise.left_out, minlength=ARCS) == 0)
     pairs = stay & np.roll(stay, 1)
     alike = off * np.roll(off, 1) / (variance + MODEL_PX**2)
     return bool(pairs.any()) and float(np.mean(alike[pairs])) > _ALIKE
-
-
-def _arc_of(azimuth: Array) -> NDArray[np.intp]:
-    """The arc of each pixel, shape (n,)."""
-    return np.asarray(((azimuth + np.pi) / (2.0 * np.pi) * _ARCS).astype(int) % _ARCS)
 
 
 def _shown(
@@ -96,8 +96,8 @@ def _shown(
     """How far each arc is off by its residuals, its variance by its pixels, and whether it shows an
     edge, each of shape (36,)."""
     weights = 1.0 / noise.variance
-    size = np.bincount(arc, by_radius * by_radius * weights, minlength=_ARCS)
-    pull = np.bincount(arc, by_radius * residuals * weights, minlength=_ARCS)
+    size = np.bincount(arc, by_radius * by_radius * weights, minlength=ARCS)
+    pull = np.bincount(arc, by_radius * residuals * weights, minlength=ARCS)
     least = _FAINT * size.max()
     variance = 1.0 / np.maximum(size, least)
     return pull * variance, variance, np.asarray(size > least)
@@ -106,8 +106,8 @@ def _shown(
 def _ragged(residuals: Array, variance: Array, arc: NDArray[np.intp]) -> NDArray[np.bool_]:
     """Which arcs look like something else, shape (36,)."""
     squares = np.minimum(residuals**2 / variance, _CLIP_SIGMAS**2)
-    count = np.maximum(np.bincount(arc, minlength=_ARCS), 1)
-    mean = np.bincount(arc, squares, minlength=_ARCS) / count
+    count = np.maximum(np.bincount(arc, minlength=ARCS), 1)
+    mean = np.bincount(arc, squares, minlength=ARCS) / count
     return np.asarray(mean > _RAGGED * max(float(np.median(mean)), 1.0))
 
 
@@ -118,7 +118,7 @@ def _off_circle(off: Array, variance: Array, seen: NDArray[np.bool_]) -> Array:
     """
     # The seed makes the same image give the same result.
     order = np.tile(np.flatnonzero(seen), (_TRIALS, 1))
-    picks = np.random.default_rng(_ARCS).permuted(order, axis=1)[:, :3]
+    picks = np.random.default_rng(ARCS).permuted(order, axis=1)[:, :3]
     picks = picks[np.abs(np.linalg.det(_DESIGN[picks])) > _LEAST_SPREAD]
     circles = np.linalg.solve(_DESIGN[picks], off[picks][..., None])[..., 0]
     # The circle of the fit itself is one of the trials.

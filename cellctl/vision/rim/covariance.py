@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellctl.geometry.pose import Array
-from cellctl.vision.rim.arcs import MODEL_PX
+from cellctl.vision.rim.arcs import ARCS, MODEL_PX, arc_of
 from cellctl.vision.rim.noise import BRIGHT, DARK
 from cellctl.vision.rim.problem import RimProblem, by_radius
 from cellctl.vision.rim.shape import RimShape
@@ -18,8 +18,8 @@ from cellctl.vision.rim.solver import RimFit
 
 _WALL_MODEL_PX, _CONE_MODEL_PX, _RING_MODEL_PX = 0.02, 0.027, 0.06
 """Error of a centre when the light at the rim varies by as much as the rim's contrast."""
-_BINS, _REACH = 36, 6
-"""Sectors of azimuth, and over how many of them errors may hang together."""
+_REACH = 6
+"""Number of arcs over which errors may hang together."""
 _LOST = 1.4
 """Factor that makes up for what the fit takes out of these sums: it brings their total to zero."""
 _SHRINK = 0.3
@@ -30,10 +30,10 @@ CHANCE = 2.1
 """Sums over a few arcs reach this multiple of what independent errors give by chance alone. Only
 what exceeds it widens the covariance."""
 
-_STEPS = np.abs(np.subtract.outer(np.arange(_BINS), np.arange(_BINS)))
+_STEPS = np.abs(np.subtract.outer(np.arange(ARCS), np.arange(ARCS)))
 # Bartlett's triangle, as Newey and West have it. It is a box correlated with itself, so that no
 # choice of sums can give a negative variance.
-_KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, _BINS - _STEPS) / _REACH, 0.0)
+_KERNEL: Array = np.maximum(1.0 - np.minimum(_STEPS, ARCS - _STEPS) / _REACH, 0.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,7 +126,7 @@ def _seen(fit: RimFit) -> Array:
     unexplained = solution.noise.own(solution.residuals)
     # To first order this is how far each pixel's residual alone moves the centre.
     scores = solution.covariance[rows] @ solution.design * solution.noise.weights * unexplained
-    # Both images of a joint fit share the sectors: what disturbs one side of a rim disturbs it in
+    # Both images of a joint fit share the arcs: what disturbs one side of a rim disturbs it in
     # both.
     return arc_covariance(scores, fit.problem.azimuths(solution.vector))
 
@@ -156,9 +156,9 @@ def arc_covariance(scores: Array, azimuth: Array) -> Array:
 
 
 def _sums_over_arcs(scores: Array, azimuth: Array) -> Array:
-    """Sums of scores (k, n) over the pixels of each sector, shape (k, sectors)."""
-    sector = ((azimuth + np.pi) / (2.0 * np.pi) * _BINS).astype(int) % _BINS
-    return np.stack([np.bincount(sector, row, minlength=_BINS) for row in scores])
+    """Sums of scores (k, n) over the pixels of each arc, shape (k, 36)."""
+    arc = arc_of(azimuth)
+    return np.stack([np.bincount(arc, row, minlength=ARCS) for row in scores])
 
 
 def _widened(covariance: Array, seen: Array) -> Array:
