@@ -7,8 +7,10 @@ What the sensor itself read at the zero is kept: it tells how the force has chan
 
 import asyncio
 import json
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -101,26 +103,21 @@ async def keep_zero(arm: GuardedRobot, sensor_T_wrench: RigidTransform, pressed:
         _three(raw[:3]),
         _three(_base_R_sensor(arm).as_rotvec()),
     )
-    await _on_disk(arm.zero_file, kept)
+    await _keep(arm.zero_file, kept)
 
 
 async def note_held(arm: GuardedRobot, held: str) -> None:
     """Add to the kept zero by which fault something has held the part."""
     kept = await kept_zero(arm)
     if arm.zero_file is not None and kept is not None:
-        await _on_disk(arm.zero_file, replace(kept, held=held))
+        await _keep(arm.zero_file, replace(kept, held=held))
 
 
 async def forget_zero(arm: GuardedRobot) -> None:
     """The arm has left the place of the part. Never raises for a disk."""
     path = arm.zero_file
-    if path is None:
-        return
-    try:
-        async with asyncio.timeout(_DISK_S):
-            await asyncio.to_thread(remove_durably, path)
-    except (OSError, TimeoutError) as error:
-        _log.warning("zero of a part not forgotten", file=str(path), error=str(error))
+    if path is not None:
+        await _on_disk(partial(remove_durably, path), path, "zero of a part not forgotten")
 
 
 async def kept_zero(arm: GuardedRobot) -> KeptZero | None:
@@ -171,12 +168,18 @@ def _base_R_sensor(arm: GuardedRobot) -> Rotation:
     return arm.robot.state().base_T_flange.rotation * arm.flange_T_sensor.rotation
 
 
-async def _on_disk(path: Path, kept: KeptZero) -> None:
+async def _keep(path: Path, kept: KeptZero) -> None:
+    write = partial(write_durably, path, kept.to_json())
+    await _on_disk(write, path, "zero of a part not kept")
+
+
+async def _on_disk(change: Callable[[], object], path: Path, failed: str) -> None:
+    """Change a file; a disk that fails or hangs is told in the log with the words ``failed``."""
     try:
         async with asyncio.timeout(_DISK_S):
-            await asyncio.to_thread(write_durably, path, kept.to_json())
+            await asyncio.to_thread(change)
     except (OSError, TimeoutError) as error:
-        _log.warning("zero of a part not kept", file=str(path), error=str(error))
+        _log.warning(failed, file=str(path), error=str(error))
 
 
 def _three(numbers: Any) -> tuple[float, float, float]:

@@ -51,7 +51,6 @@ _NEXT_IN_IDLE = {
     "MAINTENANCE": "`cellctl procedure NUMBER`; before a part `cellctl mode production`",
     "MANUAL": "`cellctl mode production` or `maintenance`: in Manual nothing is started",
 }
-GOOD = RunResult.GOOD.value
 _NO_RUN = frozenset({"IDLE", "STOPPED", "ABORTED", "COMPLETED", "RESETTING", "CLEARING"})
 """States in which what was measured is of a run that has ended."""
 _GUARDED = "force_sensors."
@@ -170,7 +169,8 @@ def _next(report: StatusReport) -> str:
     if (report.state, report.mode) == ("COMPLETED", "MAINTENANCE"):
         # Nothing was joined: whoever opened the gripper now might drop the part that was weighed.
         return _NEXT_AFTER_PROCEDURE
-    if report.state == "COMPLETED" and (report.last_run is None or report.last_run.result != GOOD):
+    joined = report.last_run is not None and report.last_run.result == RunResult.GOOD
+    if report.state == "COMPLETED" and not joined:
         # After a dry run, or a run that Complete has ended, the part hangs free over its place.
         return _NEXT_WITHOUT_PART
     hold = "`cellctl hold` pauses at the next safe point"
